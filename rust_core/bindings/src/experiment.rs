@@ -1,0 +1,180 @@
+//! Scenarios and runs.
+
+use crate::errors::to_python;
+use hp_plant::command::{ACTUATOR_COUNT, Command};
+use hp_plant::config::library::Override;
+use hp_plant::signals;
+use hp_plant::simulation;
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::prelude::*;
+
+/// Totals of a run and why it ended.
+type Totals<'py> = (Bound<'py, PyDict>, &'static str);
+
+fn parse_overrides(overrides: &[String]) -> PyResult<Vec<Override>> {
+    overrides.iter().map(|text| Override::parse(text).map_err(to_python)).collect()
+}
+
+fn to_dict<'py>(py: Python<'py>, summary: &hp_plant::summary::Summary) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for (name, value) in summary.values() {
+        dict.set_item(name, value)?;
+    }
+    Ok(dict)
+}
+
+/// A scenario with vehicle, drive cycle and rule-based controller, ready to run.
+#[pyclass(frozen, module = "hp_gym._core")]
+pub struct Experiment {
+    inner: simulation::Experiment,
+}
+
+#[pymethods]
+impl Experiment {
+    #[new]
+    #[pyo3(signature = (scenario, controller=None, overrides=Vec::new(), substeps=1))]
+    fn new(
+        scenario: &str,
+        controller: Option<&str>,
+        overrides: Vec<String>,
+        substeps: u32,
+    ) -> PyResult<Self> {
+        let overrides = parse_overrides(&overrides)?;
+        let mut inner = simulation::Experiment::load(scenario, controller, &overrides).map_err(to_python)?;
+        if !(1..=1000).contains(&substeps) {
+            return Err(PyValueError::new_err(format!("substeps is {substeps}, but must be between 1 and 1000")));
+        }
+        inner.plant = inner.plant.with_substeps(substeps);
+        Ok(Self { inner })
+    }
+
+    #[getter]
+    fn description(&self) -> &str {
+        &self.inner.scenario.description
+    }
+
+    #[getter]
+    fn vehicle(&self) -> &str {
+        &self.inner.scenario.vehicle
+    }
+
+    #[getter]
+    fn cycle(&self) -> &str {
+        &self.inner.scenario.cycle
+    }
+
+    #[getter]
+    fn controller(&self) -> &str {
+        &self.inner.scenario.controller
+    }
+
+    #[getter]
+    fn ambient_temperature_degc(&self) -> f64 {
+        self.inner.scenario.climate.ambient_temperature_degc.0
+    }
+
+    #[getter]
+    fn duration_s(&self) -> usize {
+        self.inner.cycle.duration_s()
+    }
+
+    #[getter]
+    fn distance_m(&self) -> f64 {
+        self.inner.cycle.distance_m()
+    }
+
+    /// Lowest and highest physical value of every actuator.
+    fn actuator_ranges(&self) -> Vec<(f64, f64)> {
+        (0..ACTUATOR_COUNT).map(|row| self.inner.plant.ranges.range(row)).collect()
+    }
+
+    fn simulate<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyDict>, &'static str)> {
+        let trajectory = py.detach(|| self.inner.simulate());
+        let rows = trajectory.values.len() / trajectory.columns;
+        let values = trajectory.values.into_pyarray(py).reshape([rows, trajectory.columns])?;
+        Ok((values, to_dict(py, &trajectory.summary)?, trajectory.end.name()))
+    }
+
+    fn totals<'py>(&self, py: Python<'py>) -> PyResult<Totals<'py>> {
+        let (summary, end) = py.detach(|| self.inner.totals());
+        Ok((to_dict(py, &summary)?, end.name()))
+    }
+
+    fn start(slf: Py<Self>, py: Python<'_>) -> Run {
+        let run = slf.borrow(py).inner.start();
+        Run { experiment: slf, inner: run, ended: None }
+    }
+}
+
+/// A run in progress.
+#[pyclass(module = "hp_gym._core")]
+pub struct Run {
+    experiment: Py<Experiment>,
+    inner: simulation::Run,
+    ended: Option<&'static str>,
+}
+
+#[pymethods]
+impl Run {
+    fn rule_based_command<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        let command = self.experiment.borrow(py).inner.rule_based_command(&mut self.inner);
+        command.0.to_vec().into_pyarray(py)
+    }
+
+    fn step(&mut self, py: Python<'_>, command: PyReadonlyArray1<'_, f32>) -> PyResult<Option<&'static str>> {
+        if let Some(reason) = self.ended {
+            return Err(PyRuntimeError::new_err(format!("this run has ended ({reason}); start another one")));
+        }
+        let values = command.as_slice()?;
+        let command: [f32; ACTUATOR_COUNT] = values.try_into().map_err(|_| {
+            PyValueError::new_err(format!("command has {} values, but must have {ACTUATOR_COUNT}", values.len()))
+        })?;
+        if let Some(row) = command.iter().position(|value| !(-1.0..=1.0).contains(value)) {
+            let name = hp_plant::command::ACTUATORS[row].name;
+            return Err(PyValueError::new_err(format!(
+                "command[{row}] ({name}) is {}, but must be between -1 and 1",
+                command[row]
+            )));
+        }
+        let experiment = self.experiment.borrow(py);
+        self.ended = experiment.inner.step(&mut self.inner, &Command(command)).map(simulation::EndReason::name);
+        Ok(self.ended)
+    }
+
+    fn look<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let mut row = Vec::new();
+        self.experiment.borrow(py).inner.look(&self.inner, &mut row);
+        row.into_pyarray(py)
+    }
+
+    fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(py, &self.inner.summary)
+    }
+}
+
+/// Totals of several scenarios with the same overrides, run side by side.
+#[pyfunction]
+#[pyo3(signature = (scenarios, overrides=Vec::new()))]
+pub fn totals<'py>(py: Python<'py>, scenarios: Vec<String>, overrides: Vec<String>) -> PyResult<Vec<Totals<'py>>> {
+    let overrides = parse_overrides(&overrides)?;
+    let results: Vec<_> = py.detach(|| {
+        let run = |name: &String| Ok(simulation::Experiment::load(name, None, &overrides)?.totals());
+        scenarios.par_iter().map(run).collect()
+    });
+    results
+        .into_iter()
+        .map(|result| {
+            let (summary, end) = result.map_err(to_python)?;
+            Ok((to_dict(py, &summary)?, end.name()))
+        })
+        .collect()
+}
+
+/// Name, unit and description of every trajectory column.
+#[pyfunction(name = "signals")]
+pub fn signal_table() -> Vec<(&'static str, &'static str, &'static str)> {
+    signals::all().map(|signal| (signal.name, signal.unit, signal.description)).collect()
+}

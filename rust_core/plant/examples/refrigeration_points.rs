@@ -1,0 +1,66 @@
+//! Prints the refrigeration loop at 20 operating points as CSV, parameters first as commented TOML.
+//!
+//! `scripts/check_refrigeration_cycle.py` compares them with CoolProp and TESPy.
+
+#[path = "../tests/support/refrigeration.rs"]
+mod support;
+
+use hp_plant::circuits::refrigeration_loop::LoopDemand;
+
+/// Hot and cold coolant returns [degC], their capacity rates [W/K] and the power demand [W].
+const POINTS: [[f64; 5]; 20] = [
+    [10.0, -10.0, 900.0, 800.0, 600.0],
+    [20.0, -10.0, 900.0, 800.0, 900.0],
+    [30.0, -15.0, 900.0, 800.0, 900.0],
+    [35.0, -5.0, 900.0, 800.0, 1200.0],
+    [40.0, -10.0, 1100.0, 900.0, 1200.0],
+    [40.0, 0.0, 900.0, 800.0, 800.0],
+    [40.0, 0.0, 900.0, 800.0, 1500.0],
+    [40.0, 10.0, 700.0, 1200.0, 2000.0],
+    [45.0, -5.0, 1200.0, 1200.0, 1400.0],
+    [50.0, 0.0, 900.0, 800.0, 600.0],
+    [50.0, 5.0, 500.0, 500.0, 1500.0],
+    [50.0, 15.0, 900.0, 800.0, 1200.0],
+    [55.0, -5.0, 900.0, 800.0, 1000.0],
+    [55.0, 20.0, 900.0, 800.0, 2500.0],
+    [60.0, 0.0, 900.0, 800.0, 1200.0],
+    [60.0, 20.0, 1500.0, 1500.0, 1800.0],
+    [65.0, 10.0, 900.0, 800.0, 1500.0],
+    [70.0, 25.0, 900.0, 800.0, 1500.0],
+    [75.0, 15.0, 900.0, 800.0, 900.0],
+    [78.0, 30.0, 1200.0, 800.0, 1200.0],
+];
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    for line in toml::to_string(&support::parameters())?.lines() {
+        println!("# {line}");
+    }
+    println!(
+        "hot_return_k,cold_return_k,hot_capacity_rate_w_k,cold_capacity_rate_w_k,power_limit_w,status,\
+         evaporating_temperature_k,condensing_temperature_k,speed_rev_s,mass_flow_kg_s,electric_power_w,\
+         condenser_heat_flow_w,evaporator_heat_flow_w,discharge_temperature_k,superheat_k,subcooling_k"
+    );
+    let cycle = support::cycle();
+    for [hot_degc, cold_degc, hot_w_k, cold_w_k, power_limit_w] in POINTS {
+        let boundary = support::boundary(hot_degc, cold_degc, hot_w_k, cold_w_k);
+        let demand = LoopDemand { power_limit_w, speed_limit_rev_s: 140.0, hold_minimum_speed: false };
+        let r = cycle.solve(&boundary, &demand, None);
+        println!(
+            "{},{},{hot_w_k},{cold_w_k},{power_limit_w},{:?},{},{},{},{},{},{},{},{},{},{}",
+            boundary.hot_return_k,
+            boundary.cold_return_k,
+            r.status,
+            r.evaporating_temperature_k,
+            r.condensing_temperature_k,
+            r.speed_rev_s,
+            r.mass_flow_kg_s,
+            r.electric_power_w,
+            r.condenser_heat_flow_w,
+            r.evaporator_heat_flow_w,
+            r.discharge_temperature_k,
+            r.superheat_k,
+            r.subcooling_k
+        );
+    }
+    Ok(())
+}

@@ -1,0 +1,181 @@
+//! Equations of the quasi-steady vapour-compression cycle, for given saturation temperatures and speed.
+
+use crate::components::compressor::soft_floor;
+use crate::components::heat_exchanger::inlet_conductance_w_k;
+use crate::components::refrigerant_exchanger::approach_limited_k;
+use crate::config::refrigeration::RefrigerationParameters;
+use crate::config::{Celsius, Violation};
+use crate::media::refrigerant::{CondensingIsobar, RefrigerantTable};
+use crate::numerics::dual::{Dual, Real};
+
+/// Isentropic work below which the cycle is continued smoothly [J/kg]; far below the lowest pressure ratio.
+const WORK_KNEE_J_KG: f64 = 500.0;
+
+const PASCAL_PER_BAR: f64 = 1e5;
+
+/// Parameters and property table, with the limits as saturation temperatures.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RefrigerationCycle {
+    pub(super) parameters: RefrigerationParameters,
+    pub(super) table: RefrigerantTable,
+    /// Condensing temperature at the highest pressure [K].
+    pub(super) highest_condensing_k: f64,
+    /// Evaporating temperature at the lowest suction pressure [K].
+    pub(super) lowest_evaporating_k: f64,
+    /// Highest discharge temperature [K].
+    pub(super) highest_discharge_k: f64,
+    displacement_m3: f64,
+}
+
+/// Coolants as the cycle meets them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct CoolantSides {
+    pub hot_inlet_k: f64,
+    pub cold_inlet_k: f64,
+    /// Duty per distance between coolant inlet and saturation [W/K].
+    pub hot_conductance_w_k: f64,
+    pub cold_conductance_w_k: f64,
+}
+
+/// The cycle at one pair of saturation temperatures and one speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct CyclePoint<T> {
+    pub evaporating_k: T,
+    pub condensing_k: T,
+    pub speed_rev_s: T,
+    pub superheat_k: T,
+    pub subcooling_k: T,
+    pub evaporating_pressure_pa: T,
+    pub mass_flow_kg_s: T,
+    pub suction_enthalpy_j_kg: T,
+    pub discharge_enthalpy_j_kg: T,
+    pub liquid_enthalpy_j_kg: T,
+    pub isobar: CondensingIsobar<T>,
+    pub evaporator_w: T,
+    pub condenser_w: T,
+    pub electric_w: T,
+    /// Distance from the balance of the evaporator, as temperature [K].
+    pub cold_residual_k: T,
+    /// Distance from the balance of the condenser, as temperature [K].
+    pub hot_residual_k: T,
+}
+
+impl RefrigerationCycle {
+    /// Checks what the single ranges cannot: limits against each other and against the property table.
+    ///
+    /// # Errors
+    /// The first parameter that does not fit.
+    pub fn new(parameters: RefrigerationParameters, table: RefrigerantTable) -> Result<Self, Violation> {
+        let compressor = &parameters.compressor;
+        let violation = |key: &str, value: f64, allowed: String| Err(Violation::new(key, value, allowed));
+        let lowest_pa = table.saturation_pressure_pa(table.lowest_saturation_k());
+        let highest_pa = table.saturation_pressure_pa(table.highest_saturation_k());
+        let (low_pa, high_pa) = (
+            parameters.minimum_suction_pressure_bar * PASCAL_PER_BAR,
+            parameters.maximum_pressure_bar * PASCAL_PER_BAR,
+        );
+        if high_pa > highest_pa {
+            let allowed = format!("must be at most {} for {}", highest_pa / PASCAL_PER_BAR, table.name());
+            return violation("maximum_pressure_bar", parameters.maximum_pressure_bar, allowed);
+        }
+        if low_pa < lowest_pa {
+            let allowed = format!("must be at least {} for {}", lowest_pa / PASCAL_PER_BAR, table.name());
+            return violation(
+                "minimum_suction_pressure_bar",
+                parameters.minimum_suction_pressure_bar,
+                allowed,
+            );
+        }
+        if compressor.minimum_speed_rev_s >= compressor.maximum_speed_rev_s {
+            let allowed = format!("must be below maximum_speed_rev_s ({})", compressor.maximum_speed_rev_s);
+            return violation("compressor.minimum_speed_rev_s", compressor.minimum_speed_rev_s, allowed);
+        }
+        Ok(Self {
+            highest_condensing_k: table.saturation_temperature_k(high_pa),
+            lowest_evaporating_k: table.saturation_temperature_k(low_pa),
+            highest_discharge_k: Celsius(compressor.maximum_discharge_temperature_degc).kelvin(),
+            displacement_m3: compressor.displacement_m3(),
+            parameters,
+            table,
+        })
+    }
+
+    /// Parameters in use.
+    #[must_use]
+    pub fn parameters(&self) -> &RefrigerationParameters {
+        &self.parameters
+    }
+
+    /// Property table in use.
+    #[must_use]
+    pub fn table(&self) -> &RefrigerantTable {
+        &self.table
+    }
+
+    pub(super) fn coolant_sides(&self, hot: (f64, f64), cold: (f64, f64)) -> CoolantSides {
+        CoolantSides {
+            hot_inlet_k: hot.0,
+            cold_inlet_k: cold.0,
+            hot_conductance_w_k: inlet_conductance_w_k(hot.1, self.parameters.condenser_ua_w_k),
+            cold_conductance_w_k: inlet_conductance_w_k(cold.1, self.parameters.evaporator_ua_w_k),
+        }
+    }
+
+    /// All quantities of the cycle and both balances.
+    #[inline]
+    pub(super) fn evaluate<T: Real>(&self, sides: &CoolantSides, unknowns: [T; 3]) -> CyclePoint<T> {
+        let [evaporating_k, condensing_k, speed_rev_s] = unknowns;
+        let parameters = &self.parameters;
+        let superheat_k = approach_limited_k(parameters.superheat_k, -(evaporating_k - sides.cold_inlet_k));
+        let subcooling_k = approach_limited_k(parameters.subcooling_k, condensing_k - sides.hot_inlet_k);
+        let suction = self.table.suction_state(evaporating_k, superheat_k);
+        let isobar = self.table.condensing_isobar(condensing_k);
+        let liquid_enthalpy_j_kg = isobar.liquid_enthalpy_j_kg(subcooling_k);
+
+        let efficiency =
+            parameters.compressor.efficiency(isobar.pressure_pa / suction.pressure_pa, speed_rev_s);
+        let isentropic_j_kg = isobar.enthalpy_at_entropy_j_kg(suction.entropy_j_kg_k) - suction.enthalpy_j_kg;
+        let work_j_kg = soft_floor(isentropic_j_kg, WORK_KNEE_J_KG) / efficiency.isentropic;
+        let mass_flow_kg_s =
+            efficiency.volumetric * suction.density_kg_m3 * speed_rev_s * self.displacement_m3;
+
+        let compression_w = mass_flow_kg_s * work_j_kg;
+        let evaporator_w = mass_flow_kg_s * (suction.enthalpy_j_kg - liquid_enthalpy_j_kg);
+        let condenser_w = evaporator_w + compression_w;
+        CyclePoint {
+            evaporating_k,
+            condensing_k,
+            speed_rev_s,
+            superheat_k,
+            subcooling_k,
+            evaporating_pressure_pa: suction.pressure_pa,
+            mass_flow_kg_s,
+            suction_enthalpy_j_kg: suction.enthalpy_j_kg,
+            discharge_enthalpy_j_kg: suction.enthalpy_j_kg + work_j_kg,
+            liquid_enthalpy_j_kg,
+            isobar,
+            evaporator_w,
+            condenser_w,
+            electric_w: compression_w / parameters.compressor.electrical_efficiency,
+            cold_residual_k: -(evaporating_k - sides.cold_inlet_k)
+                - evaporator_w / sides.cold_conductance_w_k,
+            hot_residual_k: condensing_k - sides.hot_inlet_k - condenser_w / sides.hot_conductance_w_k,
+        }
+    }
+
+    /// Gas temperature at the compressor outlet [K].
+    pub(super) fn discharge_k<T: Real>(&self, point: &CyclePoint<T>) -> T {
+        self.table.discharge_temperature_k(&point.isobar, point.discharge_enthalpy_j_kg)
+    }
+}
+
+impl<T: Real> CyclePoint<T> {
+    pub fn pressure_ratio(&self) -> f64 {
+        self.isobar.pressure_pa.value() / self.evaporating_pressure_pa.value()
+    }
+}
+
+/// The three unknowns as independent variables.
+pub(super) fn variables(unknowns: [f64; 3]) -> [Dual<3>; 3] {
+    std::array::from_fn(|k| Dual::variable(unknowns[k], k))
+}

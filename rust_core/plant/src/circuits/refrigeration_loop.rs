@@ -1,0 +1,319 @@
+//! The refrigeration loop as the plant sees it: one quasi-steady solve a step, inside the compressor's envelope.
+//!
+//! The compressor gets the most power that demand, speed, pressures, discharge temperature and both coolant
+//! supplies at the end of the step allow. No charge, pressure drop or refrigerant dynamics are modelled.
+
+use std::cell::Cell;
+
+use serde::{Deserialize, Serialize};
+
+use super::refrigeration_cycle::{CyclePoint, RefrigerationCycle};
+use super::refrigeration_solver::Solver;
+pub use super::refrigeration_solver::{Limit, SupplyLimit, WarmStart};
+use crate::components::compressor::CompressorState;
+use crate::components::refrigerant_exchanger::{CondenserStreams, EvaporatorStreams};
+
+/// Conductance below which a coolant counts as standing still [W/K].
+const LEAST_CONDUCTANCE_W_K: f64 = 1.0;
+
+/// What the coolants offer during a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoopBoundary {
+    /// Coolant entering the condenser [K].
+    pub hot_return_k: f64,
+    /// Coolant entering the evaporator [K].
+    pub cold_return_k: f64,
+    /// Capacity rate of the hot coolant [W/K].
+    pub hot_capacity_rate_w_k: f64,
+    /// Capacity rate of the cold coolant [W/K].
+    pub cold_capacity_rate_w_k: f64,
+    /// Hot supply: `base + sensitivity * condenser heat flow` must stay at or below its limit.
+    pub hot_supply: SupplyLimit,
+    /// Cold supply: `base - sensitivity * evaporator heat flow` must stay at or above its limit.
+    pub cold_supply: SupplyLimit,
+}
+
+/// What the compressor may do during a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoopDemand {
+    /// Electrical power that is demanded or allowed [W].
+    pub power_limit_w: f64,
+    /// Highest speed [rev/s].
+    pub speed_limit_rev_s: f64,
+    /// Run at minimum speed even if that takes more than `power_limit_w`.
+    pub hold_minimum_speed: bool,
+}
+
+/// How a solve ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum LoopStatus {
+    /// At rest; `limited_by` tells why.
+    Off,
+    /// At rest: the pressure ratio would stay below what the machine can work with.
+    NoLift,
+    /// Takes the power it is given.
+    Converged,
+    /// At minimum speed, with more power than demanded, until the minimum time on is over.
+    MinimumSpeed,
+    /// At the highest speed or on the speed ramp.
+    SpeedLimited,
+    /// At the highest condensing pressure.
+    PressureLimited,
+    /// At the lowest suction pressure.
+    SuctionLimited,
+    /// One of the coolant supplies ends the step at its limit.
+    CoolantLimited,
+    /// At the highest discharge temperature.
+    DischargeLimited,
+}
+
+/// The loop during one step.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LoopResult {
+    /// How the solve ended.
+    pub status: LoopStatus,
+    /// What holds the compressor back, or keeps it off.
+    pub limited_by: Limit,
+    /// Evaporating temperature; at rest that of the coolant [K].
+    pub evaporating_temperature_k: f64,
+    /// Condensing temperature; at rest that of the coolant [K].
+    pub condensing_temperature_k: f64,
+    /// Evaporating pressure [Pa].
+    pub evaporating_pressure_pa: f64,
+    /// Condensing pressure [Pa].
+    pub condensing_pressure_pa: f64,
+    /// Compressor speed [rev/s].
+    pub speed_rev_s: f64,
+    /// Refrigerant mass flow [kg/s].
+    pub mass_flow_kg_s: f64,
+    /// Electrical power of the compressor, with the start loss [W].
+    pub electric_power_w: f64,
+    /// Heat to the hot coolant [W].
+    pub condenser_heat_flow_w: f64,
+    /// Heat from the cold coolant [W].
+    pub evaporator_heat_flow_w: f64,
+    /// Gas temperature at the compressor outlet [K].
+    pub discharge_temperature_k: f64,
+    /// Motor loss and start loss, which leave to ambient [W].
+    pub loss_to_ambient_w: f64,
+    /// Share of the start loss in power and loss [W].
+    pub start_loss_w: f64,
+    /// Superheat at the compressor inlet [K].
+    pub superheat_k: f64,
+    /// Subcooling at the condenser outlet [K].
+    pub subcooling_k: f64,
+    /// Newton iterations of all limits tried.
+    pub iterations: u32,
+    /// Newton gave up and bracketing over speed solved.
+    pub bracketed: bool,
+}
+
+/// Memory of the loop.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct RefrigerationState {
+    /// Memory of the envelope.
+    pub compressor: CompressorState,
+    /// Last solution with the machine running.
+    pub warm_start: Option<WarmStart>,
+}
+
+impl RefrigerationState {
+    /// A vehicle that was parked for long.
+    #[must_use]
+    pub fn parked() -> Self {
+        Self { compressor: CompressorState::parked(), warm_start: None }
+    }
+}
+
+impl LoopResult {
+    /// The solution as the next start value.
+    #[must_use]
+    pub fn warm_start(&self) -> Option<WarmStart> {
+        self.running().then_some(WarmStart {
+            evaporating_k: self.evaporating_temperature_k,
+            condensing_k: self.condensing_temperature_k,
+            speed_rev_s: self.speed_rev_s,
+            limit: self.limited_by,
+        })
+    }
+
+    /// The compressor turns.
+    #[must_use]
+    pub fn running(&self) -> bool {
+        !matches!(self.status, LoopStatus::Off | LoopStatus::NoLift)
+    }
+}
+
+impl RefrigerationCycle {
+    /// One step inside the compressor's envelope: starts, stops, holds, ramps and solves.
+    ///
+    /// A stopped machine starts only where `may_start` is set; the plant sets it once a second. It runs while the
+    /// demand covers minimum speed or its minimum time on lasts, and stops at once where a limit leaves no room.
+    pub fn step(
+        &self,
+        state: &mut RefrigerationState,
+        boundary: &LoopBoundary,
+        demand_w: f64,
+        step_s: f64,
+        may_start: bool,
+    ) -> LoopResult {
+        let parameters = &self.parameters.compressor;
+        let wanted = demand_w >= parameters.minimum_power_w;
+        let hold_minimum_speed = state.compressor.held_on(parameters);
+        let startable = may_start && wanted && state.compressor.rested(parameters);
+        let mut result = if (state.compressor.running && (wanted || hold_minimum_speed)) || startable {
+            let demand = LoopDemand {
+                power_limit_w: if wanted { demand_w } else { 0.0 },
+                speed_limit_rev_s: state.compressor.speed_limit_rev_s(parameters, step_s),
+                hold_minimum_speed,
+            };
+            self.solve(boundary, &demand, state.warm_start.as_ref())
+        } else {
+            self.at_rest(boundary, LoopStatus::Off, Limit::Power)
+        };
+        let forced = result.limited_by != Limit::Power;
+        let speed_rev_s = result.running().then_some(result.speed_rev_s);
+        result.start_loss_w = state.compressor.advance(parameters, speed_rev_s, forced, step_s);
+        result.electric_power_w += result.start_loss_w;
+        result.loss_to_ambient_w += result.start_loss_w;
+        state.warm_start = result.warm_start().or(state.warm_start);
+        result
+    }
+
+    /// The quasi-steady loop at the highest speed that demand and limits allow.
+    #[must_use]
+    pub fn solve(
+        &self,
+        boundary: &LoopBoundary,
+        demand: &LoopDemand,
+        warm_start: Option<&WarmStart>,
+    ) -> LoopResult {
+        let parameters = &self.parameters.compressor;
+        let power_limit_w = demand.power_limit_w.min(parameters.maximum_power_w);
+        if !demand.hold_minimum_speed && (power_limit_w <= 0.0 || power_limit_w < parameters.minimum_power_w)
+        {
+            return self.at_rest(boundary, LoopStatus::Off, Limit::Power);
+        }
+        let sides = self.coolant_sides(
+            (boundary.hot_return_k, boundary.hot_capacity_rate_w_k),
+            (boundary.cold_return_k, boundary.cold_capacity_rate_w_k),
+        );
+        let flowing = sides.hot_conductance_w_k.min(sides.cold_conductance_w_k) >= LEAST_CONDUCTANCE_W_K;
+        let finite = (boundary.hot_return_k + boundary.cold_return_k + power_limit_w).is_finite();
+        if !(flowing && finite) {
+            return self.at_rest(boundary, LoopStatus::Off, Limit::CoolantFlow);
+        }
+        let mut solver = Solver {
+            cycle: self,
+            sides,
+            hot_supply: boundary.hot_supply,
+            cold_supply: boundary.cold_supply,
+            power_limit_w,
+            speed_limit_rev_s: demand.speed_limit_rev_s.min(parameters.maximum_speed_rev_s),
+            hold: demand.hold_minimum_speed,
+            iterations: Cell::new(0),
+            bracketed: false,
+        };
+        let mut result = match solver.solve(warm_start) {
+            Err(limit) => self.at_rest(boundary, LoopStatus::Off, limit),
+            Ok((point, limit)) if point.pressure_ratio() < parameters.minimum_pressure_ratio => {
+                self.at_rest(boundary, LoopStatus::NoLift, limit)
+            }
+            Ok((point, limit)) => self.running_result(&point, limit),
+        };
+        (result.iterations, result.bracketed) = (solver.iterations.get(), solver.bracketed);
+        result
+    }
+
+    /// Temperature differences between refrigerant and coolant at both ends of every zone [K]: condenser gas
+    /// inlet, dew point, bubble point, liquid outlet; evaporator gas outlet, dew point, inlet. None is negative.
+    #[must_use]
+    pub fn stream_margins_k(&self, boundary: &LoopBoundary, result: &LoopResult) -> [f64; 7] {
+        let sides = self.coolant_sides(
+            (boundary.hot_return_k, boundary.hot_capacity_rate_w_k),
+            (boundary.cold_return_k, boundary.cold_capacity_rate_w_k),
+        );
+        let unknowns =
+            [result.evaporating_temperature_k, result.condensing_temperature_k, result.speed_rev_s];
+        let point = self.evaluate(&sides, unknowns);
+        let flow = point.mass_flow_kg_s;
+        let (dew, bubble) = (point.isobar.dew_enthalpy_j_kg, point.isobar.liquid_enthalpy_j_kg(0.0));
+        let suction_dew = self.table.suction_state(point.evaporating_k, 0.0).enthalpy_j_kg;
+        let condenser = CondenserStreams {
+            coolant_inlet_k: boundary.hot_return_k,
+            capacity_rate_w_k: boundary.hot_capacity_rate_w_k,
+            discharge_k: self.discharge_k(&point),
+            condensing_k: point.condensing_k,
+            subcooling_k: point.subcooling_k,
+            desuperheating_w: flow * (point.discharge_enthalpy_j_kg - dew).max(0.0),
+            condensation_w: flow * (point.discharge_enthalpy_j_kg.min(dew) - bubble),
+            subcooling_w: flow * (bubble - point.liquid_enthalpy_j_kg),
+        };
+        let evaporator = EvaporatorStreams {
+            coolant_inlet_k: boundary.cold_return_k,
+            capacity_rate_w_k: boundary.cold_capacity_rate_w_k,
+            evaporating_k: point.evaporating_k,
+            superheat_k: point.superheat_k,
+            evaporation_w: flow * (suction_dew - point.liquid_enthalpy_j_kg),
+            superheating_w: flow * (point.suction_enthalpy_j_kg - suction_dew),
+        };
+        let ([a, b, c, d], [e, f, g]) = (condenser.margins_k(), evaporator.margins_k());
+        [a, b, c, d, e, f, g]
+    }
+
+    fn running_result(&self, point: &CyclePoint<f64>, limit: Limit) -> LoopResult {
+        LoopResult {
+            status: match limit {
+                Limit::Power | Limit::CoolantFlow => LoopStatus::Converged,
+                Limit::Speed => LoopStatus::SpeedLimited,
+                Limit::MinimumSpeed => LoopStatus::MinimumSpeed,
+                Limit::Pressure => LoopStatus::PressureLimited,
+                Limit::Suction => LoopStatus::SuctionLimited,
+                Limit::HotCoolant | Limit::ColdCoolant => LoopStatus::CoolantLimited,
+                Limit::Discharge => LoopStatus::DischargeLimited,
+            },
+            limited_by: limit,
+            evaporating_temperature_k: point.evaporating_k,
+            condensing_temperature_k: point.condensing_k,
+            evaporating_pressure_pa: point.evaporating_pressure_pa,
+            condensing_pressure_pa: point.isobar.pressure_pa,
+            speed_rev_s: point.speed_rev_s,
+            mass_flow_kg_s: point.mass_flow_kg_s,
+            electric_power_w: point.electric_w,
+            condenser_heat_flow_w: point.condenser_w,
+            evaporator_heat_flow_w: point.evaporator_w,
+            discharge_temperature_k: self.discharge_k(point),
+            loss_to_ambient_w: (1.0 - self.parameters.compressor.electrical_efficiency) * point.electric_w,
+            start_loss_w: 0.0,
+            superheat_k: point.superheat_k,
+            subcooling_k: point.subcooling_k,
+            iterations: 0,
+            bracketed: false,
+        }
+    }
+
+    /// No flow; each side has taken the temperature of its coolant.
+    fn at_rest(&self, boundary: &LoopBoundary, status: LoopStatus, limit: Limit) -> LoopResult {
+        let (evaporating_k, condensing_k) = (boundary.cold_return_k, boundary.hot_return_k);
+        LoopResult {
+            status,
+            limited_by: limit,
+            evaporating_temperature_k: evaporating_k,
+            condensing_temperature_k: condensing_k,
+            evaporating_pressure_pa: self.table.saturation_pressure_pa(evaporating_k),
+            condensing_pressure_pa: self.table.saturation_pressure_pa(condensing_k),
+            speed_rev_s: 0.0,
+            mass_flow_kg_s: 0.0,
+            electric_power_w: 0.0,
+            condenser_heat_flow_w: 0.0,
+            evaporator_heat_flow_w: 0.0,
+            discharge_temperature_k: condensing_k,
+            loss_to_ambient_w: 0.0,
+            start_loss_w: 0.0,
+            superheat_k: 0.0,
+            subcooling_k: 0.0,
+            iterations: 0,
+            bracketed: false,
+        }
+    }
+}

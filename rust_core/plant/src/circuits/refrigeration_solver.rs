@@ -1,0 +1,394 @@
+//! Finds the highest compressor speed that respects every limit, with both exchangers in balance.
+//!
+//! Newton on evaporating temperature, condensing temperature and speed, the third equation being the active
+//! limit. Every other limit is then checked and, where violated, becomes the active one. What Newton does not
+//! solve is bracketed over speed, see [`Solver::bracketed`].
+
+use std::cell::Cell;
+
+use serde::{Deserialize, Serialize};
+
+use super::refrigeration_cycle::{CoolantSides, CyclePoint, RefrigerationCycle, variables};
+use crate::numerics::dual::{Dual, Real};
+use crate::numerics::root::{bracketed_root, maximum};
+
+/// Largest balance error [K] or scaled limit error of a solution.
+const RESIDUAL_TOLERANCE: f64 = 1e-8;
+/// How far a limit may be missed, in its scaled unit (1 K, or 1 % of power or speed).
+const LIMIT_TOLERANCE: f64 = 1e-6;
+const MAX_NEWTON_ITERATIONS: u32 = 25;
+/// Longest Newton step of a temperature [K].
+const MAX_TEMPERATURE_STEP_K: f64 = 10.0;
+/// Largest factor by which one Newton step changes speed.
+const MAX_SPEED_FACTOR: f64 = 3.0;
+/// Power and speed errors are scaled with this share of the limit.
+const SCALE_SHARE: f64 = 0.01;
+
+/// What holds the compressor back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Limit {
+    /// The power that is demanded or allowed.
+    Power,
+    /// The highest speed, or what the ramp lets it be.
+    Speed,
+    /// The lowest speed, during the minimum time on.
+    MinimumSpeed,
+    /// Highest condensing pressure.
+    Pressure,
+    /// Lowest suction pressure.
+    Suction,
+    /// Hot coolant supply at its highest temperature.
+    HotCoolant,
+    /// Cold coolant supply at its lowest temperature.
+    ColdCoolant,
+    /// Highest discharge gas temperature.
+    Discharge,
+    /// A coolant stands still (or an input is not a finite number).
+    CoolantFlow,
+}
+
+/// Limits that stop the machine if they are exceeded at minimum speed. Less speed always relieves them.
+const PROTECTIONS: [Limit; 4] = [Limit::Pressure, Limit::Suction, Limit::HotCoolant, Limit::ColdCoolant];
+
+/// All limits whose margin falls with speed.
+const CAPS: [Limit; 6] =
+    [Limit::Power, Limit::Speed, Limit::Pressure, Limit::Suction, Limit::HotCoolant, Limit::ColdCoolant];
+
+/// Coolant supply temperature at the end of the step as a function of the exchanger's heat flow.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SupplyLimit {
+    /// Supply temperature at the end of the step without any heat flow [K].
+    pub base_k: f64,
+    /// Change per heat flow, positive on both sides [K/W].
+    pub sensitivity_k_w: f64,
+    /// Temperature that must not be passed [K].
+    pub limit_k: f64,
+}
+
+/// Start values for Newton: the last solution.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct WarmStart {
+    /// Evaporating temperature [K].
+    pub evaporating_k: f64,
+    /// Condensing temperature [K].
+    pub condensing_k: f64,
+    /// Speed [rev/s].
+    pub speed_rev_s: f64,
+    /// The limit that was active.
+    pub limit: Limit,
+}
+
+/// One problem.
+pub(super) struct Solver<'a> {
+    pub cycle: &'a RefrigerationCycle,
+    pub sides: CoolantSides,
+    pub hot_supply: SupplyLimit,
+    pub cold_supply: SupplyLimit,
+    pub power_limit_w: f64,
+    pub speed_limit_rev_s: f64,
+    /// Run at minimum speed although power allows less.
+    pub hold: bool,
+    pub iterations: Cell<u32>,
+    pub bracketed: bool,
+}
+
+/// A solution, or the limit that keeps the machine off.
+pub(super) type Solution = Result<(CyclePoint<f64>, Limit), Limit>;
+
+enum Newton {
+    Solved([f64; 3]),
+    /// The active limit lies beyond the highest or below the lowest speed.
+    Above,
+    Below,
+    Failed,
+}
+
+impl Solver<'_> {
+    fn minimum_speed(&self) -> f64 {
+        self.cycle.parameters.compressor.minimum_speed_rev_s
+    }
+
+    /// Room left below a limit in its scaled unit; negative where it is exceeded.
+    fn margin<T: Real>(&self, limit: Limit, point: &CyclePoint<T>) -> T {
+        match limit {
+            Limit::Power => {
+                (-point.electric_w + self.power_limit_w) / (SCALE_SHARE * self.power_limit_w.max(1.0))
+            }
+            Limit::Speed | Limit::CoolantFlow => {
+                (-point.speed_rev_s + self.speed_limit_rev_s) / (SCALE_SHARE * self.speed_limit_rev_s)
+            }
+            Limit::MinimumSpeed => {
+                (-point.speed_rev_s + self.minimum_speed()) / (SCALE_SHARE * self.minimum_speed())
+            }
+            Limit::Pressure => -point.condensing_k + self.cycle.highest_condensing_k,
+            Limit::Suction => point.evaporating_k - self.cycle.lowest_evaporating_k,
+            Limit::HotCoolant => {
+                let SupplyLimit { base_k, sensitivity_k_w, limit_k } = self.hot_supply;
+                -(point.condenser_w * sensitivity_k_w) + (limit_k - base_k)
+            }
+            Limit::ColdCoolant => {
+                let SupplyLimit { base_k, sensitivity_k_w, limit_k } = self.cold_supply;
+                -(point.evaporator_w * sensitivity_k_w) + (base_k - limit_k)
+            }
+            Limit::Discharge => -self.cycle.discharge_k(point) + self.cycle.highest_discharge_k,
+        }
+    }
+
+    /// The most exceeded of the limits, with its margin.
+    fn tightest(&self, limits: &[Limit], point: &CyclePoint<f64>) -> (Limit, f64) {
+        let mut tightest = (limits[0], f64::INFINITY);
+        for &limit in limits {
+            let margin = self.margin(limit, point);
+            if margin < tightest.1 {
+                tightest = (limit, margin);
+            }
+        }
+        tightest
+    }
+
+    /// The solution with the highest speed that respects all limits.
+    pub fn solve(&mut self, warm: Option<&WarmStart>) -> Solution {
+        let protected = [
+            (Limit::Pressure, self.cycle.highest_condensing_k - self.sides.hot_inlet_k),
+            (Limit::Suction, self.sides.cold_inlet_k - self.cycle.lowest_evaporating_k),
+            (Limit::HotCoolant, self.hot_supply.limit_k - self.hot_supply.base_k),
+            (Limit::ColdCoolant, self.cold_supply.base_k - self.cold_supply.limit_k),
+        ];
+        if let Some((limit, _)) = protected.into_iter().find(|(_, room)| *room <= 0.0) {
+            return Err(limit);
+        }
+        if self.speed_limit_rev_s < self.minimum_speed() * (1.0 - LIMIT_TOLERANCE) {
+            return Err(Limit::Speed);
+        }
+        let start = self.start(warm);
+        let first = match warm.map(|warm| warm.limit) {
+            // The discharge limit can have a second root at low speed: it is only ever reached from above.
+            None | Some(Limit::Discharge | Limit::CoolantFlow | Limit::MinimumSpeed) => Limit::Power,
+            Some(limit) => limit,
+        };
+        let first = if self.hold && self.power_limit_w <= 0.0 { Limit::MinimumSpeed } else { first };
+        match self.active_set(first, start) {
+            Some(solution) => solution,
+            None => self.bracketed(start),
+        }
+    }
+
+    /// Newton with one limit after the other; `None` where bracketing has to decide.
+    fn active_set(&self, first: Limit, start: [f64; 3]) -> Option<Solution> {
+        let (mut active, mut unknowns) = (first, start);
+        for _ in 0..8 {
+            unknowns = match self.newton(|point| self.margin(active, point), unknowns) {
+                Newton::Solved(solved) => solved,
+                Newton::Above if active != Limit::Speed => {
+                    active = Limit::Speed;
+                    continue;
+                }
+                Newton::Below if !matches!(active, Limit::MinimumSpeed | Limit::Discharge) => {
+                    active = Limit::MinimumSpeed;
+                    continue;
+                }
+                _ => return None,
+            };
+            let point = self.cycle.evaluate(&self.sides, unknowns);
+            if active == Limit::MinimumSpeed {
+                match self.at_minimum_speed(&point) {
+                    Some(verdict) => return Some(verdict),
+                    None if self.hold => active = Limit::Power,
+                    None => return None,
+                }
+                continue;
+            }
+            if point.speed_rev_s < self.minimum_speed() * (1.0 - LIMIT_TOLERANCE) {
+                match active {
+                    Limit::Power if !self.hold => return Some(Err(Limit::Power)),
+                    Limit::Discharge => return None,
+                    _ => active = Limit::MinimumSpeed,
+                }
+                continue;
+            }
+            let (limit, margin) = self.tightest(&CAPS, &point);
+            if margin < -LIMIT_TOLERANCE {
+                active = limit;
+            } else if active == Limit::Discharge {
+                return self.relieved_by_less_speed(unknowns).then_some(Ok((point, active)));
+            } else if self.margin(Limit::Discharge, &point) < -LIMIT_TOLERANCE {
+                active = Limit::Discharge;
+            } else {
+                return Some(Ok((point, active)));
+            }
+        }
+        None
+    }
+
+    /// What minimum speed means for the machine; `None` where more speed is possible or discharge decides.
+    fn at_minimum_speed(&self, point: &CyclePoint<f64>) -> Option<Solution> {
+        let exceeds_power = self.margin(Limit::Power, point) < -LIMIT_TOLERANCE;
+        let (protection, margin) = self.tightest(&PROTECTIONS, point);
+        if exceeds_power && !self.hold {
+            Some(Err(Limit::Power))
+        } else if margin < -LIMIT_TOLERANCE {
+            Some(Err(protection))
+        } else if !exceeds_power {
+            None
+        } else if self.margin(Limit::Discharge, point) < -LIMIT_TOLERANCE {
+            Some(Err(Limit::Discharge))
+        } else {
+            Some(Ok((*point, Limit::MinimumSpeed)))
+        }
+    }
+
+    /// Leakage makes the gas hot at low speed too, so the discharge limit can be met at two speeds; the higher
+    /// is wanted, where the margin falls with speed.
+    fn relieved_by_less_speed(&self, unknowns: [f64; 3]) -> bool {
+        let point = self.cycle.evaluate(&self.sides, variables(unknowns));
+        let rows = [point.cold_residual_k, point.hot_residual_k, self.margin(Limit::Discharge, &point)];
+        solve_three(rows.map(|row| row.gradient), [0.0, 0.0, 1.0]).is_some_and(|change| change[2] < 0.0)
+    }
+
+    /// Start values inside the physical range: warm, or from a guess of the lift.
+    fn start(&self, warm: Option<&WarmStart>) -> [f64; 3] {
+        let finite = |w: &&WarmStart| (w.evaporating_k + w.condensing_k + w.speed_rev_s).is_finite();
+        if let Some(warm) = warm.filter(finite) {
+            return self.confine([warm.evaporating_k, warm.condensing_k, warm.speed_rev_s]);
+        }
+        let evaporating = self.sides.cold_inlet_k - 5.0;
+        let condensing = (self.sides.hot_inlet_k + 8.0).max(evaporating + 10.0);
+        let reference = 2.0 * self.minimum_speed();
+        let point = self.cycle.evaluate(&self.sides, [evaporating, condensing, reference]);
+        let speed = reference * self.power_limit_w / point.electric_w;
+        self.confine([evaporating, condensing, speed.min(self.speed_limit_rev_s)])
+    }
+
+    fn confine(&self, [evaporating, condensing, speed]: [f64; 3]) -> [f64; 3] {
+        let (lowest, highest) =
+            (self.cycle.table.lowest_saturation_k() - 20.0, self.cycle.table.highest_saturation_k() + 20.0);
+        [
+            evaporating.max(lowest).min(self.sides.cold_inlet_k),
+            condensing.min(highest).max(self.sides.hot_inlet_k),
+            speed.max(0.5 * self.minimum_speed()).min(1.5 * self.speed_limit_rev_s),
+        ]
+    }
+
+    /// Both balances together with a third equation.
+    fn newton(&self, third: impl Fn(&CyclePoint<Dual<3>>) -> Dual<3>, start: [f64; 3]) -> Newton {
+        let (low, high) = (0.5 * self.minimum_speed(), 1.5 * self.speed_limit_rev_s);
+        let mut unknowns = self.confine(start);
+        for _ in 0..MAX_NEWTON_ITERATIONS {
+            self.iterations.set(self.iterations.get() + 1);
+            let point = self.cycle.evaluate(&self.sides, variables(unknowns));
+            let residuals = [point.cold_residual_k, point.hot_residual_k, third(&point)];
+            let error = residuals.iter().fold(0.0_f64, |error, residual| error.max(residual.value.abs()));
+            if error < RESIDUAL_TOLERANCE {
+                return Newton::Solved(unknowns);
+            }
+            let Some(step) = solve_three(residuals.map(|r| r.gradient), residuals.map(|r| -r.value)) else {
+                return Newton::Failed;
+            };
+            let speed = unknowns[2];
+            let fastest = if step[2] > 0.0 { MAX_SPEED_FACTOR - 1.0 } else { 1.0 - 1.0 / MAX_SPEED_FACTOR };
+            let scale = (MAX_TEMPERATURE_STEP_K / step[0].abs())
+                .min(MAX_TEMPERATURE_STEP_K / step[1].abs())
+                .min(fastest * speed / step[2].abs())
+                .min(1.0);
+            let next = self.confine(std::array::from_fn(|k| unknowns[k] + scale * step[k]));
+            // Pushed against the end of the speed range twice: the root lies outside.
+            if speed == high && next[2] == high {
+                return Newton::Above;
+            }
+            if speed == low && next[2] == low {
+                return Newton::Below;
+            }
+            unknowns = next;
+        }
+        Newton::Failed
+    }
+
+    /// Brackets the least margin of all limits over speed.
+    fn bracketed(&mut self, start: [f64; 3]) -> Solution {
+        self.bracketed = true;
+        let nearby = Cell::new(start);
+        let at_speed = |speed: f64| {
+            let point = self.at_speed(speed, nearby.get());
+            nearby.set([point.evaporating_k, point.condensing_k, speed]);
+            point
+        };
+        let (low, high) = (self.minimum_speed(), self.speed_limit_rev_s);
+        let slowest = at_speed(low);
+        if let Some(verdict) = self.at_minimum_speed(&slowest) {
+            return verdict;
+        }
+        let caps = |speed: f64| self.tightest(&CAPS, &at_speed(speed)).1;
+        // The speed limit is one of the caps, so the far end never has room left.
+        let fastest = bracketed_root(caps, (low, caps(low)), (high, caps(high)), RESIDUAL_TOLERANCE);
+        let point = at_speed(fastest);
+        let discharge = |speed: f64| self.margin(Limit::Discharge, &at_speed(speed));
+        let room = discharge(fastest);
+        if room >= -LIMIT_TOLERANCE {
+            return Ok((point, self.tightest(&CAPS, &point).0));
+        }
+        let coolest = maximum(discharge, low, fastest);
+        let most_room = discharge(coolest);
+        if most_room < 0.0 {
+            return Err(Limit::Discharge);
+        }
+        let speed = bracketed_root(discharge, (coolest, most_room), (fastest, room), RESIDUAL_TOLERANCE);
+        Ok((at_speed(speed), Limit::Discharge))
+    }
+
+    /// Both balances at a fixed speed: Newton or, where it fails, nested bracketing, which cannot miss.
+    ///
+    /// The condenser balance rises with condensing temperature and the evaporator balance falls with evaporating
+    /// temperature; both brackets exist because properties are held beyond the table.
+    fn at_speed(&self, speed_rev_s: f64, start: [f64; 3]) -> CyclePoint<f64> {
+        let scale = SCALE_SHARE * speed_rev_s;
+        let reached = |point: &CyclePoint<Dual<3>>| (-point.speed_rev_s + speed_rev_s) / scale;
+        if let Newton::Solved([evaporating, condensing, _]) =
+            self.newton(reached, [start[0], start[1], speed_rev_s])
+        {
+            return self.cycle.evaluate(&self.sides, [evaporating, condensing, speed_rev_s]);
+        }
+        let at = |evaporating: f64, condensing: f64| {
+            self.cycle.evaluate(&self.sides, [evaporating, condensing, speed_rev_s])
+        };
+        let condensing_at = |evaporating: f64| {
+            let residual = |condensing: f64| at(evaporating, condensing).hot_residual_k;
+            let low = self.sides.hot_inlet_k;
+            let (high, f_high) = expand(low, 50.0, |x| (residual(x), residual(x) >= 0.0));
+            bracketed_root(residual, (low, residual(low)), (high, f_high), 1e-3 * RESIDUAL_TOLERANCE)
+        };
+        let residual = |evaporating: f64| at(evaporating, condensing_at(evaporating)).cold_residual_k;
+        let high = self.sides.cold_inlet_k;
+        let (low, f_low) = expand(high, -50.0, |x| (residual(x), residual(x) >= 0.0));
+        let evaporating =
+            bracketed_root(residual, (low, f_low), (high, residual(high)), 1e-1 * RESIDUAL_TOLERANCE);
+        at(evaporating, condensing_at(evaporating))
+    }
+}
+
+/// Walks from `from` in doubling steps until the function reports success; returns the place and its value.
+fn expand(from: f64, first_step: f64, function: impl Fn(f64) -> (f64, bool)) -> (f64, f64) {
+    let mut step = first_step;
+    loop {
+        let (value, done) = function(from + step);
+        if done || step.abs() > 1e9 {
+            return (from + step, value);
+        }
+        step *= 2.0;
+    }
+}
+
+/// Cramer's rule for three equations given by rows; `None` for a singular matrix.
+#[inline]
+fn solve_three(rows: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]> {
+    let [a, b, c] = rows;
+    let cross = |u: [f64; 3], v: [f64; 3]| {
+        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    };
+    let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
+    let determinant = a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2];
+    let inverse = determinant.recip();
+    let solution =
+        std::array::from_fn(|k| (right[0] * bc[k] + right[1] * ca[k] + right[2] * ab[k]) * inverse);
+    let finite = solution.iter().all(|x: &f64| x.is_finite());
+    (determinant != 0.0 && finite).then_some(solution)
+}

@@ -1,0 +1,306 @@
+//! Battery pack: first-order equivalent circuit per string (paper section 2.1), limits and capacity.
+//!
+//! All strings are equal. Over a step the current is constant, the RC pair follows its exact solution and the
+//! open-circuit voltage its exact mean, so terminal energy, losses and stored energy balance to round-off.
+
+use crate::config::ZERO_CELSIUS_K;
+use crate::config::battery::{BatteryParameters, RateLimitParameters};
+use crate::numerics::interpolation::{BilinearTable, LinearTable};
+use serde::{Deserialize, Serialize};
+
+/// Rounds of the fixed point for the mean open-circuit voltage; one suffices within a table segment.
+const VOLTAGE_ROUNDS: usize = 12;
+
+/// Electrical state of a battery.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct BatteryState {
+    /// Charge drawn from each string since full [C].
+    pub charge_drawn_c: f64,
+    /// Charge that was drawn when the run began [C].
+    pub initial_charge_drawn_c: f64,
+    /// Signed root of twice the energy in the RC pair of a string [J^0.5].
+    ///
+    /// Energy and not voltage is the state, because C1 changes with temperature and charge.
+    pub polarisation: f64,
+}
+
+/// Limits on the terminal power during a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PowerLimits {
+    /// Largest charging power, as a positive number [W].
+    pub charge_w: f64,
+    /// Largest discharging power [W].
+    pub discharge_w: f64,
+}
+
+/// What the battery did during a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BatteryStep {
+    /// State at the end.
+    pub state: BatteryState,
+    /// Pack current, positive while discharging [A].
+    pub current_a: f64,
+    /// Mean terminal voltage [V].
+    pub voltage_v: f64,
+    /// Terminal power [W].
+    pub terminal_power_w: f64,
+    /// Chemical power: open-circuit voltage times current [W].
+    pub chemical_power_w: f64,
+    /// Heat of all resistors [W].
+    pub loss_w: f64,
+}
+
+/// A battery ready to run: parameters with their tables.
+#[derive(Debug, Clone)]
+pub struct Battery {
+    cells_in_series: f64,
+    strings: f64,
+    cell_capacity_c: f64,
+    minimum_string_voltage_v: f64,
+    maximum_string_voltage_v: f64,
+    charge_limit: RateLimitParameters,
+    discharge_limit: RateLimitParameters,
+    open_circuit_voltage: LinearTable,
+    circuit: BilinearTable<3>,
+    usable_capacity: LinearTable,
+}
+
+impl RateLimitParameters {
+    /// Largest rate at a temperature [1/h].
+    #[must_use]
+    pub fn rate_per_h(&self, temperature_k: f64) -> f64 {
+        let rate = self.rate_at_zero_degc_per_h + self.rate_rise_per_h_k * (temperature_k - ZERO_CELSIUS_K);
+        rate.clamp(0.0, self.maximum_rate_per_h)
+    }
+}
+
+impl BatteryParameters {
+    /// Number of cells.
+    #[must_use]
+    pub fn cells(&self) -> f64 {
+        f64::from(self.cells_in_series * self.strings_in_parallel)
+    }
+
+    /// Heat capacity of the pack; follows the number of cells [J/K].
+    #[must_use]
+    pub fn heat_capacity_j_k(&self) -> f64 {
+        self.cells() * self.cell_mass_kg * self.cell_specific_heat_j_kg_k
+    }
+}
+
+impl Battery {
+    /// Prepares the tables.
+    #[must_use]
+    pub fn new(parameters: &BatteryParameters) -> Self {
+        let scale = parameters.resistance_scale;
+        let circuit = &parameters.circuit;
+        let times = |table: &[Vec<f64>], factor: f64| -> Vec<Vec<f64>> {
+            table.iter().map(|row| row.iter().map(|value| value * factor).collect()).collect()
+        };
+        // Scaling resistance and capacitance against each other keeps the time constant.
+        let series = times(&circuit.series_resistance_ohm, scale);
+        let polarisation = times(&circuit.polarisation_resistance_ohm, scale);
+        let capacitance = times(&circuit.polarisation_capacitance_f, 1.0 / scale);
+        let temperatures: Vec<f64> = circuit.temperature_degc.iter().map(|t| t + ZERO_CELSIUS_K).collect();
+        let usable = &parameters.usable_capacity;
+        let usable_k: Vec<f64> = usable.temperature_degc.iter().map(|t| t + ZERO_CELSIUS_K).collect();
+        let cells_in_series = f64::from(parameters.cells_in_series);
+        Self {
+            cells_in_series,
+            strings: f64::from(parameters.strings_in_parallel),
+            cell_capacity_c: parameters.cell_capacity_ah * 3600.0,
+            minimum_string_voltage_v: parameters.minimum_cell_voltage_v * cells_in_series,
+            maximum_string_voltage_v: parameters.maximum_cell_voltage_v * cells_in_series,
+            charge_limit: parameters.charge_limit.clone(),
+            discharge_limit: parameters.discharge_limit.clone(),
+            open_circuit_voltage: LinearTable::new(
+                &parameters.open_circuit_voltage.state_of_charge,
+                &parameters.open_circuit_voltage.voltage_v,
+            ),
+            circuit: BilinearTable::new(
+                &temperatures,
+                &circuit.state_of_charge,
+                [&series, &polarisation, &capacitance],
+            ),
+            usable_capacity: LinearTable::new(&usable_k, &usable.share),
+        }
+    }
+
+    /// A rested battery at a state of charge [-].
+    #[must_use]
+    pub fn rested(&self, state_of_charge: f64) -> BatteryState {
+        let drawn = (1.0 - state_of_charge) * self.cell_capacity_c;
+        BatteryState { charge_drawn_c: drawn, initial_charge_drawn_c: drawn, polarisation: 0.0 }
+    }
+
+    /// State of charge by charge [-]: what the open-circuit voltage depends on.
+    #[must_use]
+    pub fn state_of_charge(&self, state: &BatteryState) -> f64 {
+        1.0 - state.charge_drawn_c / self.cell_capacity_c
+    }
+
+    /// State of charge of equation (6): charge drawn since the start over the usable capacity [-].
+    #[must_use]
+    pub fn usable_state_of_charge(&self, state: &BatteryState, temperature_k: f64) -> f64 {
+        let initial = 1.0 - state.initial_charge_drawn_c / self.cell_capacity_c;
+        let drawn = state.charge_drawn_c - state.initial_charge_drawn_c;
+        initial - drawn / (self.cell_capacity_c * self.usable_capacity.at(temperature_k))
+    }
+
+    /// Chemical energy relative to a full battery [J].
+    #[must_use]
+    pub fn chemical_energy_j(&self, state: &BatteryState) -> f64 {
+        let below_full = self.open_circuit_voltage.integral_to(1.0)
+            - self.open_circuit_voltage.integral_to(self.state_of_charge(state));
+        -below_full * self.cell_capacity_c * self.cells_in_series * self.strings
+    }
+
+    /// Energy stored in all RC pairs [J].
+    #[must_use]
+    pub fn polarisation_energy_j(&self, state: &BatteryState) -> f64 {
+        0.5 * state.polarisation * state.polarisation * self.strings
+    }
+
+    /// The circuit as it is during one step.
+    #[must_use]
+    pub fn during(&self, state: &BatteryState, temperature_k: f64, step_s: f64) -> CircuitStep<'_> {
+        let soc = self.state_of_charge(state);
+        let [r0, r1, c1] = self.circuit.at(temperature_k, soc);
+        let series_ohm = r0 * self.cells_in_series;
+        let polarisation_ohm = r1 * self.cells_in_series;
+        let root_capacitance = (c1 / self.cells_in_series).sqrt();
+        let time_constant_s = r1 * c1;
+        let decay = (-step_s / time_constant_s).exp();
+        let (cell_v, slope) = self.open_circuit_voltage.with_slope(soc);
+        CircuitStep {
+            battery: self,
+            state: *state,
+            temperature_k,
+            step_s,
+            open_circuit_v: cell_v * self.cells_in_series,
+            // Fall of the mean open-circuit voltage per ampere.
+            discharge_ohm: 0.5 * slope * step_s / self.cell_capacity_c * self.cells_in_series,
+            series_ohm,
+            polarisation_ohm,
+            root_capacitance,
+            polarisation_v: state.polarisation / root_capacitance,
+            decay,
+            mean_decay: time_constant_s / step_s * (1.0 - decay),
+        }
+    }
+}
+
+/// One string over one step; solves current for power.
+#[derive(Debug, Clone, Copy)]
+pub struct CircuitStep<'a> {
+    battery: &'a Battery,
+    state: BatteryState,
+    temperature_k: f64,
+    step_s: f64,
+    open_circuit_v: f64,
+    discharge_ohm: f64,
+    series_ohm: f64,
+    polarisation_ohm: f64,
+    root_capacitance: f64,
+    polarisation_v: f64,
+    decay: f64,
+    mean_decay: f64,
+}
+
+impl CircuitStep<'_> {
+    /// Source voltage and resistance of the equivalent `P = I (U - R I)`.
+    fn source(&self) -> (f64, f64) {
+        let voltage = self.open_circuit_v - self.polarisation_v * self.mean_decay;
+        let resistance =
+            self.series_ohm + self.polarisation_ohm * (1.0 - self.mean_decay) + self.discharge_ohm;
+        (voltage, resistance)
+    }
+
+    /// What the terminals can take and give during this step: rate, voltage and peak power limits.
+    #[must_use]
+    pub fn power_limits(&self) -> PowerLimits {
+        let battery = self.battery;
+        let (voltage, resistance) = self.source();
+        let rate_a = |limit: &RateLimitParameters| {
+            limit.rate_per_h(self.temperature_k) * battery.cell_capacity_c / 3600.0
+        };
+        let discharge_a = rate_a(&battery.discharge_limit)
+            .min((voltage - battery.minimum_string_voltage_v) / resistance)
+            .clamp(0.0, 0.5 * voltage / resistance);
+        let charge_a = rate_a(&battery.charge_limit)
+            .min((battery.maximum_string_voltage_v - voltage) / resistance)
+            .max(0.0);
+        PowerLimits {
+            charge_w: battery.strings * charge_a * (voltage + resistance * charge_a),
+            discharge_w: battery.strings * discharge_a * (voltage - resistance * discharge_a),
+        }
+    }
+
+    /// Draws a terminal power (negative: charges). The power must lie within [`Self::power_limits`].
+    #[must_use]
+    pub fn draw(&self, terminal_power_w: f64) -> BatteryStep {
+        let battery = self.battery;
+        let power_w = terminal_power_w / battery.strings;
+        let (source_v, resistance) = self.source();
+        let mut correction_v = 0.0;
+        let mut current_a = 0.0;
+        let mut mean_open_circuit_v = self.open_circuit_v;
+        for _ in 0..VOLTAGE_ROUNDS {
+            let voltage = source_v + correction_v;
+            let root = (voltage * voltage - 4.0 * resistance * power_w).max(0.0).sqrt();
+            current_a = 2.0 * power_w / (voltage + root);
+            mean_open_circuit_v = self.mean_open_circuit_v(current_a);
+            let next_v = mean_open_circuit_v - (self.open_circuit_v - self.discharge_ohm * current_a);
+            let change_v = next_v - correction_v;
+            correction_v = next_v;
+            if change_v.abs() < 1e-13 * self.open_circuit_v {
+                break;
+            }
+        }
+        self.finish(current_a, mean_open_circuit_v)
+    }
+
+    /// Mean open-circuit voltage of a string while a constant current flows [V].
+    fn mean_open_circuit_v(&self, current_a: f64) -> f64 {
+        let battery = self.battery;
+        let start = battery.state_of_charge(&self.state);
+        let change = -current_a * self.step_s / battery.cell_capacity_c;
+        if change.abs() < 1e-9 {
+            return self.open_circuit_v - self.discharge_ohm * current_a;
+        }
+        let (start_v, slope) = battery.open_circuit_voltage.with_slope(start);
+        let (end_v, end_slope) = battery.open_circuit_voltage.with_slope(start + change);
+        let mean = if slope == end_slope {
+            0.5 * (start_v + end_v)
+        } else {
+            let table = &battery.open_circuit_voltage;
+            (table.integral_to(start + change) - table.integral_to(start)) / change
+        };
+        mean * battery.cells_in_series
+    }
+
+    fn finish(&self, current_a: f64, mean_open_circuit_v: f64) -> BatteryStep {
+        let strings = self.battery.strings;
+        let steady_v = self.polarisation_ohm * current_a;
+        let mean_polarisation_v = steady_v + (self.polarisation_v - steady_v) * self.mean_decay;
+        let end_polarisation_v = steady_v + (self.polarisation_v - steady_v) * self.decay;
+        let polarisation = end_polarisation_v * self.root_capacitance;
+        let stored_w =
+            0.5 * (polarisation * polarisation - self.state.polarisation * self.state.polarisation) / self.step_s;
+        let voltage_v = mean_open_circuit_v - self.series_ohm * current_a - mean_polarisation_v;
+        // The second term equals the mean of v1^2 / R1 over the step (exact solution of the RC pair).
+        let loss_w = self.series_ohm * current_a * current_a + (current_a * mean_polarisation_v - stored_w);
+        BatteryStep {
+            state: BatteryState {
+                charge_drawn_c: self.state.charge_drawn_c + current_a * self.step_s,
+                polarisation,
+                ..self.state
+            },
+            current_a: current_a * strings,
+            voltage_v,
+            terminal_power_w: voltage_v * current_a * strings,
+            chemical_power_w: mean_open_circuit_v * current_a * strings,
+            loss_w: loss_w * strings,
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Longitudinal dynamics of the body.
+
+use crate::config::powertrain::BodyParameters;
+
+/// Standard gravity as used by WLTP road-load work [m/s2].
+const GRAVITY_M_S2: f64 = 9.81;
+
+/// Mean powers over a step with linearly changing speed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RoadLoad {
+    /// Power lost to drag [W].
+    pub drag_power_w: f64,
+    /// Power lost to rolling resistance [W].
+    pub rolling_power_w: f64,
+    /// Rise of kinetic energy [W].
+    pub kinetic_power_w: f64,
+}
+
+impl RoadLoad {
+    /// Power that the wheels must deliver; negative while braking [W].
+    #[must_use]
+    pub fn wheel_power_w(&self) -> f64 {
+        self.drag_power_w + self.rolling_power_w + self.kinetic_power_w
+    }
+}
+
+impl BodyParameters {
+    /// Kinetic energy with rotating masses [J].
+    #[must_use]
+    pub fn kinetic_energy_j(&self, speed_m_s: f64) -> f64 {
+        0.5 * self.mass_kg * (1.0 + self.rotating_mass_share) * speed_m_s * speed_m_s
+    }
+
+    /// Road load between two speeds; exact means over the ramp, so sub-steps add up to the whole.
+    #[must_use]
+    pub fn road_load(&self, start_m_s: f64, end_m_s: f64, step_s: f64, air_density_kg_m3: f64) -> RoadLoad {
+        let mean_speed = 0.5 * (start_m_s + end_m_s);
+        let mean_cube = mean_speed * 0.5 * (start_m_s * start_m_s + end_m_s * end_m_s);
+        RoadLoad {
+            drag_power_w: 0.5 * air_density_kg_m3 * self.drag_area_m2 * mean_cube,
+            rolling_power_w: self.mass_kg * GRAVITY_M_S2 * self.rolling_resistance_coefficient * mean_speed,
+            kinetic_power_w: (self.kinetic_energy_j(end_m_s) - self.kinetic_energy_j(start_m_s)) / step_s,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn body() -> BodyParameters {
+        BodyParameters { mass_kg: 1500.0, rotating_mass_share: 0.04, drag_area_m2: 0.7, rolling_resistance_coefficient: 0.01 }
+    }
+
+    proptest! {
+        #[test]
+        fn half_steps_add_up_to_the_whole_step(a in 0.0..40.0_f64, b in 0.0..40.0_f64) {
+            let middle = 0.5 * (a + b);
+            let whole = body().road_load(a, b, 1.0, 1.2);
+            let halves = [body().road_load(a, middle, 0.5, 1.2), body().road_load(middle, b, 0.5, 1.2)];
+            let sum: f64 = halves.iter().map(|half| 0.5 * half.wheel_power_w()).sum();
+            prop_assert!((whole.wheel_power_w() - sum).abs() < 1e-8 * (1.0 + sum.abs()));
+        }
+    }
+
+    #[test]
+    fn constant_speed_needs_drag_and_rolling_power_only() {
+        let load = body().road_load(20.0, 20.0, 1.0, 1.2);
+        assert_eq!(load.kinetic_power_w, 0.0);
+        assert!((load.drag_power_w - 0.5 * 1.2 * 0.7 * 8000.0).abs() < 1e-9);
+        assert!((load.rolling_power_w - 1500.0 * 9.81 * 0.01 * 20.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,37 @@
+//! Motor and inverter, treated as one.
+
+use crate::config::powertrain::MotorParameters;
+
+/// Below this speed the vehicle counts as standing [m/s].
+pub const STANDSTILL_SPEED_M_S: f64 = 0.05;
+
+impl MotorParameters {
+    /// Loss of motor and inverter at a shaft power [W].
+    #[must_use]
+    pub fn loss_w(&self, speed_m_s: f64, shaft_power_w: f64) -> f64 {
+        let load = shaft_power_w.abs();
+        self.no_load_loss_w(speed_m_s) + self.proportional_loss * load + self.quadratic_loss_per_w * load * load
+    }
+
+    /// Shaft power into the machine that yields a recovered electrical power [W].
+    ///
+    /// Inverse of `shaft - loss(shaft)` on its rising branch; at its maximum where more is asked for.
+    #[must_use]
+    pub fn shaft_power_for_recovery_w(&self, speed_m_s: f64, recovered_power_w: f64) -> f64 {
+        let slope = 1.0 - self.proportional_loss;
+        let target = recovered_power_w + self.no_load_loss_w(speed_m_s);
+        let discriminant = slope * slope - 4.0 * self.quadratic_loss_per_w * target;
+        2.0 * target / (slope + discriminant.max(0.0).sqrt())
+    }
+
+    /// Conductance to ambient [W/K].
+    #[must_use]
+    pub fn ambient_conductance_w_k(&self, speed_m_s: f64) -> f64 {
+        self.ambient_conductance_w_k + self.ambient_conductance_per_speed_w_s_k_m * speed_m_s
+    }
+
+    fn no_load_loss_w(&self, speed_m_s: f64) -> f64 {
+        let constant = if speed_m_s > STANDSTILL_SPEED_M_S { self.constant_loss_w } else { 0.0 };
+        constant + self.speed_loss_w_s_m * speed_m_s
+    }
+}

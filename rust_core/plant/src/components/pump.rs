@@ -1,0 +1,42 @@
+//! Coolant pump under a PID that follows the flow demand (paper section 2.3).
+
+use crate::config::coolant::PumpParameters;
+use crate::control::pid::IncrementalPid;
+use serde::{Deserialize, Serialize};
+
+/// Time constant of the coolant column [s] (assumed; about a second for a loop of 10 m and 0.1 bar).
+const FLOW_TIME_CONSTANT_S: f64 = 1.0;
+
+/// Flow and controller memory of a pump.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PumpState {
+    /// Coolant flow [kg/s].
+    pub flow_kg_s: f64,
+    /// Drive signal as a share of full speed, with the controller's memory.
+    pub pid: IncrementalPid,
+}
+
+impl PumpParameters {
+    /// A pump idling at its smallest flow.
+    #[must_use]
+    pub fn idle(&self) -> PumpState {
+        let share = self.minimum_flow_kg_s / self.maximum_flow_kg_s;
+        PumpState { flow_kg_s: self.minimum_flow_kg_s, pid: IncrementalPid::at(share) }
+    }
+
+    /// One control period of the pump.
+    pub fn follow(&self, state: &mut PumpState, demand_kg_s: f64, period_s: f64) {
+        let demand_kg_s = demand_kg_s.clamp(self.minimum_flow_kg_s, self.maximum_flow_kg_s);
+        let error = (demand_kg_s - state.flow_kg_s) / self.maximum_flow_kg_s;
+        let low = self.minimum_flow_kg_s / self.maximum_flow_kg_s;
+        let drive = state.pid.update(&self.pid, error, period_s, low, 1.0);
+        let approach = 1.0 - (-period_s / FLOW_TIME_CONSTANT_S).exp();
+        state.flow_kg_s += approach * (drive * self.maximum_flow_kg_s - state.flow_kg_s);
+    }
+
+    /// Electrical power; rises with the cube of the flow [W].
+    #[must_use]
+    pub fn power_w(&self, flow_kg_s: f64) -> f64 {
+        self.maximum_power_w * (flow_kg_s / self.maximum_flow_kg_s).powi(3)
+    }
+}

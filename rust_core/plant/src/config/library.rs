@@ -1,0 +1,194 @@
+//! Finding, merging and checking configuration files.
+//!
+//! A name is looked up among the files compiled in (`configs/`), then on disk. A file may name a `base` whose
+//! values it replaces. Overrides replace single values by dotted key.
+
+use super::Validate;
+use crate::error::{PlantError, PlantResult};
+use serde::de::DeserializeOwned;
+use std::path::Path;
+use toml::{Table, Value};
+
+mod built_in {
+    include!(concat!(env!("OUT_DIR"), "/built_in_configs.rs"));
+}
+
+/// Longest chain of `base` files.
+const LONGEST_BASE_CHAIN: usize = 8;
+
+/// Kind of configuration file; its folder below `configs/`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// `vehicles/*.toml`
+    Vehicle,
+    /// `controllers/*.toml`
+    Controller,
+    /// `scenarios/**/*.toml`
+    Scenario,
+    /// `cycles/*.csv`
+    Cycle,
+    /// `refrigerants/*.csv`
+    Refrigerant,
+    /// `calibration/*.toml`
+    Calibration,
+}
+
+impl Kind {
+    /// Folder and file ending.
+    fn place(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Vehicle => ("vehicles", "toml"),
+            Self::Controller => ("controllers", "toml"),
+            Self::Scenario => ("scenarios", "toml"),
+            Self::Cycle => ("cycles", "csv"),
+            Self::Refrigerant => ("refrigerants", "csv"),
+            Self::Calibration => ("calibration", "toml"),
+        }
+    }
+
+    /// Word for messages.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Vehicle => "vehicle",
+            Self::Controller => "controller",
+            Self::Scenario => "scenario",
+            Self::Cycle => "drive cycle",
+            Self::Refrigerant => "refrigerant",
+            Self::Calibration => "calibration",
+        }
+    }
+}
+
+/// Names of the files compiled in.
+#[must_use]
+pub fn names(kind: Kind) -> Vec<&'static str> {
+    let (folder, ending) = kind.place();
+    built_in::FILES
+        .iter()
+        .filter_map(|(name, _)| name.strip_prefix(folder)?.strip_prefix('/')?.strip_suffix(ending)?.strip_suffix('.'))
+        .collect()
+}
+
+/// Text of a file compiled in or on disk.
+///
+/// # Errors
+/// No such file, or it cannot be read.
+pub fn text(kind: Kind, name: &str) -> PlantResult<String> {
+    let (folder, ending) = kind.place();
+    let key = format!("{folder}/{name}.{ending}");
+    if let Some((_, text)) = built_in::FILES.iter().find(|(file, _)| *file == key) {
+        return Ok((*text).to_owned());
+    }
+    let path = Path::new(name);
+    if path.extension().is_some_and(|found| found == ending) {
+        return std::fs::read_to_string(path)
+            .map_err(|error| PlantError::Syntax { file: name.to_owned(), message: error.to_string() });
+    }
+    Err(PlantError::Unknown {
+        kind: kind.word(),
+        name: name.to_owned(),
+        available: format!("{}, or the path of a .{ending} file", names(kind).join(", ")),
+    })
+}
+
+/// One replacement of a value by its dotted key (`battery.cell_capacity_ah`, `table.values[2]`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Override {
+    /// Dotted key within the file.
+    pub key: String,
+    /// New value.
+    pub value: Value,
+}
+
+impl Override {
+    /// Reads `key=value`; a value that is not TOML counts as text.
+    ///
+    /// # Errors
+    /// There is no `=`.
+    pub fn parse(assignment: &str) -> PlantResult<Self> {
+        let (key, value) = assignment.split_once('=').ok_or_else(|| PlantError::InvalidArgument {
+            what: "override".into(),
+            value: format!("`{assignment}`"),
+            allowed: "must have the form key=value".into(),
+        })?;
+        Ok(Self { key: key.trim().to_owned(), value: parse_value(value.trim()) })
+    }
+}
+
+fn parse_value(text: &str) -> Value {
+    let parsed = toml::from_str::<Table>(&format!("value = {text}")).ok();
+    parsed.and_then(|mut table| table.remove("value")).unwrap_or_else(|| Value::String(text.to_owned()))
+}
+
+/// Loads parameters: file, its bases, overrides, then all checks.
+///
+/// # Errors
+/// Anything wrong, with file and key.
+pub fn load<T: DeserializeOwned + Validate>(kind: Kind, name: &str, overrides: &[Override]) -> PlantResult<T> {
+    let mut table = merged(kind, name, 0)?;
+    for change in overrides {
+        set(&mut table, &change.key, change.value.clone())
+            .map_err(|message| PlantError::Syntax { file: name.to_owned(), message })?;
+    }
+    let parameters: T = serde_path_to_error::deserialize(Value::Table(table)).map_err(|error| {
+        let path = error.path().to_string();
+        let inner = error.into_inner().to_string();
+        let message = if path == "." { inner.trim().to_owned() } else { format!("`{path}`: {}", inner.trim()) };
+        PlantError::Syntax { file: name.to_owned(), message }
+    })?;
+    parameters.validate().map_err(|violation| violation.in_file(name))?;
+    Ok(parameters)
+}
+
+fn merged(kind: Kind, name: &str, depth: usize) -> PlantResult<Table> {
+    let syntax = |message: String| PlantError::Syntax { file: name.to_owned(), message };
+    if depth > LONGEST_BASE_CHAIN {
+        return Err(syntax("the chain of `base` files is too long or closed".into()));
+    }
+    let mut table: Table = toml::from_str(&text(kind, name)?).map_err(|error| syntax(error.to_string()))?;
+    match table.remove("base") {
+        None => Ok(table),
+        Some(Value::String(base)) => {
+            let mut whole = merged(kind, &base, depth + 1)?;
+            merge(&mut whole, table);
+            Ok(whole)
+        }
+        Some(other) => Err(syntax(format!("`base` is {other}, but must be the name of a {}", kind.word()))),
+    }
+}
+
+fn merge(whole: &mut Table, part: Table) {
+    for (key, value) in part {
+        match (whole.get_mut(&key), value) {
+            (Some(Value::Table(inner)), Value::Table(changes)) => merge(inner, changes),
+            (_, value) => {
+                whole.insert(key, value);
+            }
+        }
+    }
+}
+
+/// Replaces one value; the key's sections must exist.
+fn set(table: &mut Table, key: &str, new: Value) -> Result<(), String> {
+    let missing = |part: &str| format!("`{key}`: there is no `{part}`");
+    let parts: Vec<&str> = key.split('.').collect();
+    let (last, sections) = parts.split_last().ok_or_else(|| "empty key".to_owned())?;
+    let mut place = table;
+    for section in sections {
+        place = match place.get_mut(*section) {
+            Some(Value::Table(inner)) => inner,
+            _ => return Err(missing(section)),
+        };
+    }
+    let mut indices = last.split('[');
+    let name = indices.next().unwrap_or_default();
+    let mut target = place.entry(name).or_insert_with(|| Value::Boolean(false));
+    for index in indices {
+        let number: usize =
+            index.strip_suffix(']').and_then(|digits| digits.parse().ok()).ok_or_else(|| missing(last))?;
+        target = target.as_array_mut().and_then(|array| array.get_mut(number)).ok_or_else(|| missing(last))?;
+    }
+    *target = new;
+    Ok(())
+}

@@ -1,0 +1,246 @@
+//! The rule-based heat pump control unit (paper section 2.4, Figure 11).
+//!
+//! Three purposes: constant coolant flow demands, connections of the components, compressor demand. It reads
+//! the plant's temperatures as a real one does and has no way to the plant but its [`Demand`].
+
+use super::pid::ResetPid;
+use crate::circuits::branches::Branch;
+use crate::command::{Connection, Demand, Member};
+use crate::config::controller::HpcuParameters;
+use crate::config::coolant::PidParameters;
+use crate::config::scenario::{BatteryTreatment, ClimateControl, Strategy};
+use crate::numerics::thermal_network::Node;
+use crate::plant::{CONTROL_PERIOD_S, Plant};
+use crate::state::State;
+use serde::{Deserialize, Serialize};
+
+/// What the cabin needs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum CabinMode {
+    /// Heat.
+    Heating,
+    /// Air conditioning.
+    Cooling,
+}
+
+/// Stage of the thermal battery: each is left once and never entered again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ThermalBatteryStage {
+    /// Helps to warm the HTC.
+    HeatingHtc,
+    /// Emptied into the chiller loop.
+    Emptying,
+    /// Isolated.
+    Empty,
+}
+
+/// Memory of the HPCU.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct HpcuState {
+    /// Heating or cooling.
+    pub cabin_mode: CabinMode,
+    /// The battery is being heated.
+    pub heats_battery: bool,
+    /// The battery is being cooled.
+    pub cools_battery: bool,
+    /// Thermal battery.
+    pub thermal_battery: ThermalBatteryStage,
+    cabin_pid: ResetPid,
+    battery_pid: ResetPid,
+    htc_pid: ResetPid,
+    chiller_pid: ResetPid,
+}
+
+/// HPCU with its parameters and what it may use.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hpcu {
+    /// Set points, thresholds, gains.
+    pub parameters: HpcuParameters,
+    /// Sources, battery treatment, PTC.
+    pub strategy: Strategy,
+}
+
+impl Hpcu {
+    /// Memory at the start of a run.
+    #[must_use]
+    pub fn awake(&self, plant: &Plant, state: &State) -> HpcuState {
+        let cabin_k = temperature_k(state, plant.assembly.nodes.cabin);
+        let warm = cabin_k > self.parameters.cabin_set_point_degc.kelvin();
+        HpcuState {
+            cabin_mode: if warm { CabinMode::Cooling } else { CabinMode::Heating },
+            heats_battery: false,
+            cools_battery: false,
+            thermal_battery: ThermalBatteryStage::HeatingHtc,
+            cabin_pid: ResetPid::default(),
+            battery_pid: ResetPid::default(),
+            htc_pid: ResetPid::default(),
+            chiller_pid: ResetPid::default(),
+        }
+    }
+
+    /// Demand for the next control period, given the heat flows requested by the heatDemandCommander [W].
+    pub fn demand(&self, plant: &Plant, state: &State, memory: &mut HpcuState, requests_w: &[f64; 6]) -> Demand {
+        let mode = self.cabin_mode(plant, state, memory);
+        let mut demand = Demand {
+            connections: self.connections(plant, state, memory, mode),
+            ptc_allowed: self.strategy.ptc && mode == CabinMode::Heating,
+            recirculation: self.parameters.recirculation,
+            blower_level: self.parameters.blower_level,
+            htc_flow_kg_s: self.parameters.htc_flow_kg_s,
+            chiller_flow_kg_s: self.parameters.chiller_flow_kg_s,
+            requests_w: *requests_w,
+            cabin_set_point_k: self.parameters.cabin_set_point_degc.kelvin(),
+            ..Demand::default()
+        };
+        self.trim_requests(plant, state, memory, mode, &mut demand);
+        demand.compressor_power_w = self.compressor_power_w(plant, state, memory, mode);
+        demand
+    }
+
+    fn cabin_mode(&self, plant: &Plant, state: &State, memory: &mut HpcuState) -> CabinMode {
+        let above_k = temperature_k(state, plant.assembly.nodes.cabin)
+            - self.parameters.cabin_set_point_degc.kelvin();
+        memory.cabin_mode = match self.strategy.climate_control {
+            ClimateControl::Heat => CabinMode::Heating,
+            ClimateControl::Cool => CabinMode::Cooling,
+            ClimateControl::Auto if above_k > self.parameters.mode_switch_deviation_k => CabinMode::Cooling,
+            ClimateControl::Auto if above_k < -self.parameters.mode_switch_deviation_k => CabinMode::Heating,
+            ClimateControl::Auto => memory.cabin_mode,
+        };
+        memory.cabin_mode
+    }
+
+    fn connections(&self, plant: &Plant, state: &State, memory: &mut HpcuState, mode: CabinMode) -> [Connection; 6] {
+        let heating = mode == CabinMode::Heating;
+        let source = |selected: bool| {
+            if selected && heating { Connection::Chiller } else { Connection::Isolated }
+        };
+        let mut connections = [Connection::Isolated; 6];
+        let mut set = |member: Member, connection: Connection| connections[member as usize] = connection;
+        set(Member::Battery, self.battery_connection(plant, state, memory));
+        set(Member::Motor, source(self.strategy.motor));
+        set(Member::Transmission, source(self.strategy.transmission));
+        // Air conditioning rejects its heat through the front-end exchanger.
+        set(Member::Ambient, if heating { source(self.strategy.ambient) } else { Connection::Htc });
+        set(Member::ThermalBattery, self.thermal_battery_connection(plant, state, memory));
+        set(Member::Cabin, if heating { Connection::Htc } else { Connection::Chiller });
+        connections
+    }
+
+    fn battery_connection(&self, plant: &Plant, state: &State, memory: &mut HpcuState) -> Connection {
+        let limits = &self.parameters.battery;
+        let battery_k = temperature_k(state, plant.assembly.nodes.battery);
+        let heat_up_to_k = limits.heat_up_to_degc.kelvin();
+        let cool_above_k = limits.cool_above_degc.kelvin();
+        (memory.heats_battery, memory.cools_battery) = match self.strategy.battery {
+            BatteryTreatment::Isolate => (false, false),
+            BatteryTreatment::Source => (false, battery_k > limits.source_down_to_degc.kelvin()),
+            BatteryTreatment::Heat => {
+                let resume_k = heat_up_to_k - if memory.heats_battery { 0.0 } else { limits.heating_hysteresis_k };
+                let release_k = cool_above_k - if memory.cools_battery { limits.cooling_hysteresis_k } else { 0.0 };
+                (battery_k < resume_k, battery_k > release_k)
+            }
+        };
+        match (memory.heats_battery, memory.cools_battery) {
+            (true, _) => Connection::Htc,
+            (false, true) => Connection::Chiller,
+            (false, false) => Connection::Isolated,
+        }
+    }
+
+    /// First HTC while it can heat it, then chiller until empty, then isolated.
+    fn thermal_battery_connection(&self, plant: &Plant, state: &State, memory: &mut HpcuState) -> Connection {
+        if !self.strategy.thermal_battery {
+            return Connection::Isolated;
+        }
+        let temperatures = plant.branch_temperatures(state, 0.0, 0.0);
+        let least_k = plant.vehicle.controls.thermal_switch.opening_difference_k;
+        let useful = |branch: Branch| temperatures.difference_k(branch) > least_k;
+        if memory.thermal_battery == ThermalBatteryStage::HeatingHtc && !useful(Branch::ThermalBatteryHtc) {
+            memory.thermal_battery = ThermalBatteryStage::Emptying;
+        }
+        if memory.thermal_battery == ThermalBatteryStage::Emptying && !useful(Branch::ThermalBatteryChiller) {
+            memory.thermal_battery = ThermalBatteryStage::Empty;
+        }
+        match memory.thermal_battery {
+            ThermalBatteryStage::HeatingHtc => Connection::Htc,
+            ThermalBatteryStage::Emptying => Connection::Chiller,
+            ThermalBatteryStage::Empty => Connection::Isolated,
+        }
+    }
+
+    /// Lets requests fade near their targets, so that neither cabin nor battery overshoots.
+    fn trim_requests(&self, plant: &Plant, state: &State, memory: &HpcuState, mode: CabinMode, demand: &mut Demand) {
+        let nodes = &plant.assembly.nodes;
+        let beyond_k = self.cabin_error_k(plant, state, mode) + self.parameters.cabin_request_band_k;
+        demand.requests_w[Member::Cabin as usize] *=
+            (beyond_k / self.parameters.cabin_request_band_k).clamp(0.0, 1.0);
+        if self.strategy.battery == BatteryTreatment::Source && memory.cools_battery {
+            let limits = &self.parameters.battery;
+            let above_k = temperature_k(state, nodes.battery) - limits.source_down_to_degc.kelvin();
+            demand.requests_w[Member::Battery as usize] *=
+                (above_k / limits.source_request_band_k).clamp(0.0, 1.0);
+        }
+        if mode == CabinMode::Cooling {
+            demand.requests_w[Member::Ambient as usize] = crate::command::MAXIMUM_REQUEST_W;
+        }
+    }
+
+    /// Deviation that calls for compressor power [K].
+    fn cabin_error_k(&self, plant: &Plant, state: &State, mode: CabinMode) -> f64 {
+        let below_k = self.parameters.cabin_set_point_degc.kelvin()
+            - temperature_k(state, plant.assembly.nodes.cabin);
+        match mode {
+            CabinMode::Heating => below_k,
+            CabinMode::Cooling => -below_k,
+        }
+    }
+
+    /// `min(max(PID battery, PID cabin), PID chiller, PID HTC)`.
+    fn compressor_power_w(&self, plant: &Plant, state: &State, memory: &mut HpcuState, mode: CabinMode) -> f64 {
+        if !self.strategy.heat_pump {
+            return 0.0;
+        }
+        let nodes = &plant.assembly.nodes;
+        let highest_w = plant.vehicle.refrigeration.compressor.maximum_power_w;
+        let applied_w = state.compressor_power_w;
+        let power = |pid: &mut ResetPid, gains: &PidParameters, error_k: f64| {
+            pid.applied(gains, applied_w, CONTROL_PERIOD_S);
+            pid.output(gains, error_k, CONTROL_PERIOD_S, 0.0, highest_w)
+        };
+        let parameters = &self.parameters;
+        let cabin_w =
+            power(&mut memory.cabin_pid, &parameters.cabin_pid, self.cabin_error_k(plant, state, mode));
+        let battery_w = match self.battery_error_k(plant, state, memory) {
+            Some(error_k) => power(&mut memory.battery_pid, &parameters.battery_pid, error_k),
+            None => 0.0,
+        };
+        if battery_w == 0.0 {
+            memory.battery_pid.clear();
+        }
+        let htc_error_k = parameters.htc_set_point_degc.kelvin() - temperature_k(state, nodes.htc_supply);
+        let chiller_error_k =
+            temperature_k(state, nodes.chiller_supply) - parameters.chiller_set_point_degc.kelvin();
+        let htc_w = power(&mut memory.htc_pid, &parameters.htc_pid, htc_error_k);
+        let chiller_w = power(&mut memory.chiller_pid, &parameters.chiller_pid, chiller_error_k);
+        cabin_w.max(battery_w).min(htc_w).min(chiller_w)
+    }
+
+    /// Deviation of the battery from its target while the loops act on it [K].
+    fn battery_error_k(&self, plant: &Plant, state: &State, memory: &HpcuState) -> Option<f64> {
+        let battery_k = temperature_k(state, plant.assembly.nodes.battery);
+        let limits = &self.parameters.battery;
+        if memory.heats_battery {
+            return state.connected[Branch::BatteryHtc as usize].then(|| limits.heat_up_to_degc.kelvin() - battery_k);
+        }
+        let target_k = match self.strategy.battery {
+            BatteryTreatment::Source => limits.source_down_to_degc.kelvin(),
+            _ => limits.cool_above_degc.kelvin(),
+        };
+        memory.cools_battery.then(|| battery_k - target_k)
+    }
+}
+
+fn temperature_k(state: &State, node: Node) -> f64 {
+    state.temperatures_k[node.index()]
+}

@@ -1,0 +1,6 @@
+//! Controllers: the plant's own PIDs and switches, the HPCU, schedules.
+
+pub mod heat_demand_commander;
+pub mod hpcu;
+pub mod pid;
+pub mod thermal_switch;

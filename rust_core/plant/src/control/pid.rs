@@ -1,0 +1,127 @@
+//! PID controllers.
+
+use crate::config::coolant::PidParameters;
+use serde::{Deserialize, Serialize};
+
+/// Memory of a PID with external reset.
+///
+/// Its integral follows the output that was really applied (by this controller or by another one that won a
+/// minimum selection), so it cannot wind up: Shinskey, Process Control Systems, section on external reset.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct ResetPid {
+    reset: f64,
+    last_error: f64,
+    started: bool,
+}
+
+impl ResetPid {
+    /// Output for an error, limited to `low..=high`.
+    pub fn output(&mut self, gains: &PidParameters, error: f64, period_s: f64, low: f64, high: f64) -> f64 {
+        let change = if self.started { (error - self.last_error) / period_s } else { 0.0 };
+        self.last_error = error;
+        self.started = true;
+        (gains.proportional * error + self.reset + gains.derivative * change).clamp(low, high)
+    }
+
+    /// Tells the controller which output was applied since.
+    pub fn applied(&mut self, gains: &PidParameters, output: f64, period_s: f64) {
+        if gains.proportional > 0.0 {
+            let share = -(-period_s * gains.integral / gains.proportional).exp_m1();
+            self.reset += share * (output - self.reset);
+        }
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
+}
+
+/// PID in incremental form: the output is the state, so its limits are its anti-windup.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct IncrementalPid {
+    output: f64,
+    last_error: f64,
+    last_change: f64,
+    started: bool,
+}
+
+impl IncrementalPid {
+    /// A controller that starts from an output.
+    #[must_use]
+    pub fn at(output: f64) -> Self {
+        Self { output, ..Self::default() }
+    }
+
+    /// Present output.
+    #[must_use]
+    pub fn value(&self) -> f64 {
+        self.output
+    }
+
+    /// Moves the output for an error and limits it to `low..=high`.
+    pub fn update(&mut self, gains: &PidParameters, error: f64, period_s: f64, low: f64, high: f64) -> f64 {
+        let change = if self.started { error - self.last_error } else { 0.0 };
+        let bend = change - self.last_change;
+        self.last_change = change;
+        self.last_error = error;
+        self.started = true;
+        let step = gains.proportional * change
+            + gains.integral * error * period_s
+            + gains.derivative * bend / period_s;
+        self.output = (self.output + step).clamp(low, high);
+        self.output
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GAINS: PidParameters = PidParameters { proportional: 2.0, integral: 0.5, derivative: 0.0 };
+
+    #[test]
+    fn reset_pid_behind_a_minimum_selector_does_not_wind_up() {
+        let mut pid = ResetPid::default();
+        for _ in 0..10_000 {
+            let _ = pid.output(&GAINS, 5.0, 1.0, 0.0, 100.0);
+            pid.applied(&GAINS, 3.0, 1.0);
+        }
+        assert!((pid.output(&GAINS, 0.0, 1.0, 0.0, 100.0) - 3.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn reset_pid_removes_the_steady_error_of_a_first_order_lag() {
+        let mut pid = ResetPid::default();
+        let mut value = 0.0;
+        for _ in 0..2000 {
+            let output = pid.output(&GAINS, 7.0 - value, 1.0, 0.0, 100.0);
+            value += 0.05 * (output - value);
+            pid.applied(&GAINS, output, 1.0);
+        }
+        assert!((value - 7.0_f64).abs() < 1e-6);
+    }
+
+    #[test]
+    fn incremental_pid_leaves_its_limit_as_soon_as_the_error_turns() {
+        let gains = PidParameters { proportional: 0.0, integral: 0.5, derivative: 0.0 };
+        let mut pid = IncrementalPid::default();
+        for _ in 0..1000 {
+            pid.update(&gains, 1.0, 1.0, 0.0, 1.0);
+        }
+        assert_eq!(pid.value(), 1.0);
+        assert_eq!(pid.update(&gains, -0.1, 1.0, 0.0, 1.0), 0.95);
+    }
+
+    #[test]
+    fn derivative_opposes_a_fast_change() {
+        let plain = PidParameters { proportional: 1.0, integral: 0.0, derivative: 0.0 };
+        let damped = PidParameters { derivative: 4.0, ..plain.clone() };
+        let run = |gains: &PidParameters| {
+            let mut pid = ResetPid::default();
+            let _ = pid.output(gains, 5.0, 1.0, -100.0, 100.0);
+            pid.output(gains, 4.0, 1.0, -100.0, 100.0)
+        };
+        assert_eq!(run(&plain) - run(&damped), 4.0);
+    }
+}

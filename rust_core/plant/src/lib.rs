@@ -1,0 +1,21 @@
+//! Electric-vehicle thermal plant after Jeffs et al. 2019 (doi 10.3384/ecp19157107).
+//!
+//! A vehicle with powertrain, battery, cabin, two coolant loops and a refrigerant loop, stepped at 1 s. The
+//! crate knows physics and the vehicle's own controls; it knows neither reinforcement learning nor Python.
+
+pub mod circuits;
+pub mod command;
+pub mod components;
+pub mod config;
+pub mod control;
+pub mod drive_cycle;
+pub mod error;
+pub mod flows;
+pub mod ledger;
+pub mod media;
+pub mod numerics;
+pub mod plant;
+pub mod signals;
+pub mod simulation;
+pub mod state;
+pub mod summary;

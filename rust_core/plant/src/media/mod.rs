@@ -1,0 +1,4 @@
+//! Working fluids, one file each.
+
+pub mod air;
+pub mod refrigerant;

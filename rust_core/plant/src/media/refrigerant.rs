@@ -1,0 +1,289 @@
+//! Refrigerant properties around saturation, from tables made with CoolProp.
+//!
+//! `configs/refrigerants/make_table.py` writes the tables; all values are SI, temperatures in kelvin.
+
+use crate::error::{PlantError, PlantResult};
+use crate::numerics::cubic_table::CubicTable;
+use crate::numerics::dual::Real;
+
+/// Columns of the tables, without the temperature.
+const COLUMN_NAMES: [&str; COLUMNS] = [
+    "vapour_enthalpy_0",
+    "vapour_enthalpy_1",
+    "vapour_enthalpy_2",
+    "vapour_enthalpy_3",
+    "vapour_density_0",
+    "vapour_density_1",
+    "vapour_density_2",
+    "vapour_density_3",
+    "vapour_entropy_0",
+    "vapour_entropy_1",
+    "vapour_entropy_2",
+    "vapour_entropy_3",
+    "pressure_pa",
+    "liquid_enthalpy_0",
+    "liquid_enthalpy_1",
+    "liquid_enthalpy_2",
+    "liquid_enthalpy_3",
+    "liquid_enthalpy_4",
+    "liquid_enthalpy_5",
+    "dew_enthalpy",
+    "dew_entropy",
+    "isobar_enthalpy_2",
+    "isobar_enthalpy_3",
+    "isobar_enthalpy_4",
+    "isobar_temperature_1",
+    "isobar_temperature_2",
+    "isobar_temperature_3",
+    "isobar_temperature_4",
+    "isobar_temperature_5",
+    "isobar_temperature_6",
+    "isobar_temperature_7",
+    "isobar_range",
+];
+const COLUMNS: usize = 32;
+/// Pressure, the last column of the evaporating and the first of the condensing side.
+const PRESSURE: usize = 12;
+const EVAPORATING_COLUMNS: usize = PRESSURE + 1;
+/// Pressure, liquid, dew point and isentropic compression.
+const CONDENSING_COLUMNS: usize = 12;
+const ISOBAR_TEMPERATURE: usize = 24;
+const ISOBAR_TEMPERATURE_COLUMNS: usize = 8;
+
+/// Names that [`RefrigerantTable::built_in`] knows.
+pub const BUILT_IN_REFRIGERANTS: [&str; 2] = ["R134a", "R1234yf"];
+
+/// Superheated vapour at the compressor inlet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SuctionState<T> {
+    /// Evaporating pressure [Pa].
+    pub pressure_pa: T,
+    /// Enthalpy [J/kg].
+    pub enthalpy_j_kg: T,
+    /// Density [kg/m3].
+    pub density_kg_m3: T,
+    /// Entropy [J/(kg K)].
+    pub entropy_j_kg_k: T,
+}
+
+/// Properties on the condensing isobar.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CondensingIsobar<T> {
+    /// Condensing temperature, held at the ends of the table [K].
+    pub temperature_k: T,
+    /// Condensing pressure [Pa].
+    pub pressure_pa: T,
+    /// Enthalpy of dry saturated vapour [J/kg].
+    pub dew_enthalpy_j_kg: T,
+    /// Entropy of dry saturated vapour [J/(kg K)].
+    pub dew_entropy_j_kg_k: T,
+    liquid: [T; 6],
+    vapour: [T; 3],
+}
+
+impl<T: Real> CondensingIsobar<T> {
+    /// Enthalpy of liquid at this pressure, `subcooling_k` below saturation [J/kg].
+    #[inline]
+    pub fn liquid_enthalpy_j_kg(&self, subcooling_k: T) -> T {
+        polynomial(&self.liquid, subcooling_k)
+    }
+
+    /// Enthalpy at this pressure and the given entropy [J/kg]; below the dew point `dh = T ds` of wet vapour.
+    #[inline]
+    pub fn enthalpy_at_entropy_j_kg(&self, entropy_j_kg_k: T) -> T {
+        let excess = entropy_j_kg_k - self.dew_entropy_j_kg_k;
+        let wet = self.dew_enthalpy_j_kg + self.temperature_k * excess;
+        if excess.value() > 0.0 { wet + excess * excess * polynomial(&self.vapour, excess) } else { wet }
+    }
+}
+
+/// Property table of one refrigerant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RefrigerantTable {
+    name: String,
+    table: CubicTable<COLUMNS>,
+}
+
+impl RefrigerantTable {
+    /// A refrigerant that comes with the crate; upper and lower case are the same.
+    ///
+    /// # Errors
+    /// No table of this name.
+    pub fn built_in(name: &str) -> PlantResult<Self> {
+        let text = match name.to_ascii_lowercase().as_str() {
+            "r134a" => include_str!("../../../../configs/refrigerants/r134a.csv"),
+            "r1234yf" => include_str!("../../../../configs/refrigerants/r1234yf.csv"),
+            _ => {
+                return Err(PlantError::Unknown {
+                    kind: "refrigerant",
+                    name: name.to_owned(),
+                    available: BUILT_IN_REFRIGERANTS.join(", "),
+                });
+            }
+        };
+        Self::from_csv(name, text)
+    }
+
+    /// Reads a table as `make_table.py` writes it.
+    ///
+    /// # Errors
+    /// Other columns, a field that is no number, a temperature grid that is not uniform.
+    pub fn from_csv(name: &str, text: &str) -> PlantResult<Self> {
+        let fault = |message: String| PlantError::Syntax { file: format!("refrigerant {name}"), message };
+        let mut lines =
+            text.lines().enumerate().filter(|(_, line)| !line.starts_with('#') && !line.is_empty());
+        let (_, header) = lines.next().ok_or_else(|| fault("the table is empty".to_owned()))?;
+        let expected = || std::iter::once("temperature_k").chain(COLUMN_NAMES);
+        if !header.split(',').map(str::trim).eq(expected()) {
+            return Err(fault(format!("columns must be {}", expected().collect::<Vec<_>>().join(","))));
+        }
+        let (mut grid, mut rows) = (Vec::new(), Vec::new());
+        for (number, line) in lines {
+            let bad = || fault(format!("line {} does not hold {} finite numbers", number + 1, COLUMNS + 1));
+            let mut row = [0.0; COLUMNS + 1];
+            let mut fields = line.split(',');
+            for value in &mut row {
+                let field = fields.next().ok_or_else(bad)?;
+                *value = field.trim().parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(bad)?;
+            }
+            if fields.next().is_some() {
+                return Err(bad());
+            }
+            grid.push(row[0]);
+            rows.push(std::array::from_fn(|k| row[k + 1]));
+        }
+        let table = CubicTable::new(&grid, &rows)
+            .map_err(|_| fault("temperature_k must rise in equal steps, at least four rows".to_owned()))?;
+        Ok(Self { name: name.to_owned(), table })
+    }
+
+    /// Name of the refrigerant.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Lowest saturation temperature of the table [K].
+    #[must_use]
+    pub fn lowest_saturation_k(&self) -> f64 {
+        self.table.first()
+    }
+
+    /// Highest saturation temperature of the table, a few kelvin below the critical point [K].
+    #[must_use]
+    pub fn highest_saturation_k(&self) -> f64 {
+        self.table.last()
+    }
+
+    /// Saturation pressure [Pa].
+    pub fn saturation_pressure_pa<T: Real>(&self, temperature_k: T) -> T {
+        let [pressure] = self.table.evaluate::<T, PRESSURE, 1>(temperature_k);
+        pressure
+    }
+
+    /// Saturation temperature [K]; held at the ends of the table.
+    #[must_use]
+    pub fn saturation_temperature_k(&self, pressure_pa: f64) -> f64 {
+        let (mut low, mut high) = (self.table.first(), self.table.last());
+        // Bisection: exact to the last bit, and needed only when a loop is built or reported.
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if self.saturation_pressure_pa(middle) < pressure_pa {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
+    }
+
+    /// Vapour that leaves the evaporator.
+    #[inline]
+    pub fn suction_state<T: Real>(&self, evaporating_k: T, superheat_k: T) -> SuctionState<T> {
+        let c = self.table.evaluate::<T, 0, EVAPORATING_COLUMNS>(evaporating_k);
+        SuctionState {
+            pressure_pa: c[PRESSURE],
+            enthalpy_j_kg: polynomial(&c[..4], superheat_k),
+            density_kg_m3: polynomial(&c[4..8], superheat_k),
+            entropy_j_kg_k: polynomial(&c[8..12], superheat_k),
+        }
+    }
+
+    /// The isobar of a condensing temperature.
+    #[inline]
+    pub fn condensing_isobar<T: Real>(&self, condensing_k: T) -> CondensingIsobar<T> {
+        let c = self.table.evaluate::<T, PRESSURE, CONDENSING_COLUMNS>(condensing_k);
+        // Held at the ends like everything else, so that duties stay bounded for a solver that strays.
+        let ends = [self.table.first(), self.table.last()].map(T::constant);
+        CondensingIsobar {
+            temperature_k: condensing_k.max(ends[0]).min(ends[1]),
+            pressure_pa: c[0],
+            liquid: [c[1], c[2], c[3], c[4], c[5], c[6]],
+            dew_enthalpy_j_kg: c[7],
+            dew_entropy_j_kg_k: c[8],
+            vapour: [c[9], c[10], c[11]],
+        }
+    }
+
+    /// Temperature on the isobar at the given enthalpy [K]; saturation below the dew point, linear beyond the
+    /// range of the table.
+    #[inline]
+    pub fn discharge_temperature_k<T: Real>(&self, isobar: &CondensingIsobar<T>, enthalpy_j_kg: T) -> T {
+        let excess = enthalpy_j_kg - isobar.dew_enthalpy_j_kg;
+        if excess.value() <= 0.0 {
+            return isobar.temperature_k;
+        }
+        let c =
+            self.table.evaluate::<T, ISOBAR_TEMPERATURE, ISOBAR_TEMPERATURE_COLUMNS>(isobar.temperature_k);
+        let [coefficients @ .., range] = c;
+        let inside = excess.min(range);
+        let rise = inside * polynomial(&coefficients, inside);
+        if excess.value() <= range.value() {
+            return isobar.temperature_k + rise;
+        }
+        let mut slopes = coefficients;
+        for (k, slope) in slopes.iter_mut().enumerate() {
+            *slope = *slope * (k + 1) as f64;
+        }
+        isobar.temperature_k + rise + polynomial(&slopes, inside) * (excess - inside)
+    }
+}
+
+/// `c[0] + c[1] x + ...`
+#[inline]
+fn polynomial<T: Real>(coefficients: &[T], x: T) -> T {
+    let Some((last, lower)) = coefficients.split_last() else { return T::constant(0.0) };
+    lower.iter().rev().fold(*last, |sum, coefficient| sum * x + *coefficient)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn saturation_temperature_inverts_pressure() -> PlantResult<()> {
+        for name in BUILT_IN_REFRIGERANTS {
+            let table = RefrigerantTable::built_in(name)?;
+            for temperature in [220.0, 273.15, 350.0] {
+                let pressure = table.saturation_pressure_pa(temperature);
+                assert!((table.saturation_temperature_k(pressure) - temperature).abs() < 1e-9);
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn faulty_tables_are_refused_with_the_reason() {
+        let header = format!("temperature_k,{}", COLUMN_NAMES.join(","));
+        for (text, reason) in [
+            (String::new(), "empty"),
+            ("temperature_k,b".to_owned(), "columns must be"),
+            (format!("{header}\n1,2"), "line 2"),
+            (header, "four rows"),
+        ] {
+            let message = RefrigerantTable::from_csv("x", &text).expect_err("a faulty table").to_string();
+            assert!(message.contains(reason), "{message}");
+        }
+        assert!(RefrigerantTable::built_in("R744").is_err());
+    }
+}

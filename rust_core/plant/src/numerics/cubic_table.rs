@@ -1,0 +1,143 @@
+//! Several columns over one uniform grid, interpolated with C2 cubic splines.
+
+use crate::numerics::dual::Real;
+
+/// Why a table cannot be built.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum TableFault {
+    /// Splines without end conditions need four nodes.
+    TooFewRows,
+    /// The first column does not rise in equal steps.
+    NotUniform,
+}
+
+/// `COLUMNS` functions of one variable; outside the grid the end values are held.
+///
+/// One lookup finds the interval once and evaluates a block of neighbouring columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CubicTable<const COLUMNS: usize> {
+    first: f64,
+    last: f64,
+    step: f64,
+    /// Per interval: coefficients of the local coordinate's powers 0 to 3, each a row of columns.
+    intervals: Vec<[[f64; COLUMNS]; 4]>,
+}
+
+impl<const COLUMNS: usize> CubicTable<COLUMNS> {
+    /// Not-a-knot splines through `rows` at the nodes `grid`.
+    ///
+    /// # Errors
+    /// Fewer than four rows or a grid that is not uniform.
+    pub fn new(grid: &[f64], rows: &[[f64; COLUMNS]]) -> Result<Self, TableFault> {
+        if grid.len() < 4 || grid.len() != rows.len() {
+            return Err(TableFault::TooFewRows);
+        }
+        let (first, last) = (grid[0], grid[grid.len() - 1]);
+        let step = (last - first) / (grid.len() - 1) as f64;
+        let uniform =
+            grid.iter().enumerate().all(|(k, node)| (node - first - k as f64 * step).abs() < 1e-6 * step);
+        if !(step > 0.0 && uniform) {
+            return Err(TableFault::NotUniform);
+        }
+        let mut intervals = vec![[[0.0; COLUMNS]; 4]; grid.len() - 1];
+        for column in 0..COLUMNS {
+            let values: Vec<f64> = rows.iter().map(|row| row[column]).collect();
+            let slopes = not_a_knot_slopes(&values);
+            for (k, interval) in intervals.iter_mut().enumerate() {
+                let (rise, left, right) = (values[k + 1] - values[k], slopes[k], slopes[k + 1]);
+                interval[0][column] = values[k];
+                interval[1][column] = left;
+                interval[2][column] = 3.0 * rise - 2.0 * left - right;
+                interval[3][column] = left + right - 2.0 * rise;
+            }
+        }
+        Ok(Self { first, last, step, intervals })
+    }
+
+    /// Lowest node.
+    #[must_use]
+    pub fn first(&self) -> f64 {
+        self.first
+    }
+
+    /// Highest node.
+    #[must_use]
+    pub fn last(&self) -> f64 {
+        self.last
+    }
+
+    /// The columns `START .. START + LENGTH` at `x`.
+    #[inline]
+    pub fn evaluate<T: Real, const START: usize, const LENGTH: usize>(&self, x: T) -> [T; LENGTH] {
+        let inside = x.value().clamp(self.first, self.last);
+        let position = (inside - self.first) / self.step;
+        let index = (position as usize).min(self.intervals.len() - 1);
+        let u = position - index as f64;
+        // Held end values have no slope.
+        let scale = if inside == x.value() { self.step.recip() } else { 0.0 };
+        let [c0, c1, c2, c3] = &self.intervals[index];
+        std::array::from_fn(|k| {
+            let (a, b, c, d) = (c0[START + k], c1[START + k], c2[START + k], c3[START + k]);
+            x.chain(a + u * (b + u * (c + u * d)), scale * (b + u * (2.0 * c + u * 3.0 * d)))
+        })
+    }
+}
+
+/// Slopes per step at the nodes of the C2 spline whose third derivative is continuous at the second and the
+/// last but one node (SciPy `CubicSpline`, not-a-knot), by elimination of the tridiagonal system.
+fn not_a_knot_slopes(values: &[f64]) -> Vec<f64> {
+    let last = values.len() - 1;
+    let rise = |k: usize| values[k + 1] - values[k];
+    // Row k: lower[k] m[k-1] + diagonal[k] m[k] + upper[k] m[k+1] = right[k].
+    let mut diagonal = vec![4.0; last + 1];
+    let mut upper = vec![1.0; last + 1];
+    let mut lower = vec![1.0; last + 1];
+    let inner = |k: usize| if k == 0 || k == last { 0.0 } else { 3.0 * (rise(k - 1) + rise(k)) };
+    let mut right: Vec<f64> = (0..=last).map(inner).collect();
+    (diagonal[0], upper[0], right[0]) = (1.0, 2.0, 2.5 * rise(0) + 0.5 * rise(1));
+    (lower[last], diagonal[last]) = (2.0, 1.0);
+    right[last] = 2.5 * rise(last - 1) + 0.5 * rise(last - 2);
+    for k in 1..=last {
+        let factor = lower[k] / diagonal[k - 1];
+        diagonal[k] -= factor * upper[k - 1];
+        right[k] -= factor * right[k - 1];
+    }
+    right[last] /= diagonal[last];
+    for k in (0..last).rev() {
+        right[k] = (right[k] - upper[k] * right[k + 1]) / diagonal[k];
+    }
+    right
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::dual::Dual;
+
+    fn table() -> CubicTable<2> {
+        let grid: Vec<f64> = (0..9).map(|k| 1.0 + 0.5 * f64::from(k)).collect();
+        let rows: Vec<[f64; 2]> = grid.iter().map(|x| [x.powi(3) - 2.0 * x, x.sin()]).collect();
+        CubicTable::new(&grid, &rows).expect("a uniform grid")
+    }
+
+    #[test]
+    fn cubics_are_reproduced_with_their_slope() {
+        for x in [1.0, 1.2, 2.9, 4.99, 5.0] {
+            let [cubic, sine] = table().evaluate::<_, 0, 2>(Dual::<1>::variable(x, 0));
+            assert!((cubic.value - (x.powi(3) - 2.0 * x)).abs() < 1e-12, "{x}");
+            assert!((cubic.gradient[0] - (3.0 * x * x - 2.0)).abs() < 1e-11, "{x}");
+            assert!((sine.value - x.sin()).abs() < 2e-3, "{x}");
+        }
+    }
+
+    #[test]
+    fn end_values_are_held() {
+        let [cubic] = table().evaluate::<_, 0, 1>(Dual::<1>::variable(7.0, 0));
+        assert!((cubic.value - 115.0).abs() < 1e-12 && cubic.gradient[0] == 0.0);
+    }
+
+    #[test]
+    fn unequal_steps_are_refused() {
+        assert_eq!(CubicTable::new(&[0.0, 1.0, 2.0, 4.0], &[[0.0]; 4]), Err(TableFault::NotUniform));
+    }
+}

@@ -1,0 +1,7 @@
+//! Numerical building blocks; nothing here knows physics.
+
+pub mod cubic_table;
+pub mod dual;
+pub mod interpolation;
+pub mod root;
+pub mod thermal_network;

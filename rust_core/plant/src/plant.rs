@@ -1,0 +1,528 @@
+//! The vehicle: one entry, [`Plant::step`], pure and deterministic.
+
+use crate::circuits::assembly::{Assembly, LinkConditions, RECOVERY_APPROACH_K};
+use crate::circuits::branches::{
+    self, BRANCH_COUNT, Branch, BranchFlows, BranchTemperatures,
+};
+use crate::circuits::refrigeration_cycle::RefrigerationCycle;
+use crate::circuits::refrigeration_loop::{LoopBoundary, LoopResult, RefrigerationState, SupplyLimit};
+use crate::command::{ActuatorRanges, Command, Connection, Demand};
+use crate::components::battery::{Battery, BatteryStep, CircuitStep, PowerLimits};
+use crate::components::powertrain::Powertrain;
+use crate::config::library::{self, Kind, Override};
+use crate::config::scenario::InitialParameters;
+use crate::config::vehicle::VehicleParameters;
+use crate::control::pid::{IncrementalPid, ResetPid};
+use crate::control::thermal_switch;
+use crate::error::PlantResult;
+use crate::flows::{Flow, Flows};
+use crate::ledger::{self, LedgerEntry, StoredEnergyChange};
+use crate::media::air::{self, AirProperties};
+use crate::media::refrigerant::RefrigerantTable;
+use crate::numerics::thermal_network::{MAXIMUM_NODES, NodeValues};
+use crate::state::State;
+
+/// Period of all controllers and of a plant step [s].
+pub const CONTROL_PERIOD_S: f64 = 1.0;
+
+/// Pascal in a bar.
+const PASCAL_PER_BAR: f64 = 1e5;
+
+/// What the surroundings do during a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disturbance {
+    /// Vehicle speed at the beginning [m/s].
+    pub start_speed_m_s: f64,
+    /// Vehicle speed at the end [m/s].
+    pub end_speed_m_s: f64,
+    /// Ambient temperature [K].
+    pub ambient_k: f64,
+    /// Solar heat into the cabin [W].
+    pub solar_gain_w: f64,
+    /// People in the cabin.
+    pub occupants: f64,
+}
+
+/// What happened during a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepRecord {
+    /// Mean flows.
+    pub flows: Flows,
+    /// What was asked for.
+    pub demand: Demand,
+    /// Connection granted, by member.
+    pub granted: [Connection; 6],
+    /// Compressor power left by the pressure controller and the demand, before the caps [W].
+    pub compressor_demand_w: f64,
+    /// Refrigerant loop at the end of the step.
+    pub refrigeration: LoopResult,
+    /// Mean terminal voltage [V].
+    pub battery_voltage_v: f64,
+    /// Mean pack current [A].
+    pub battery_current_a: f64,
+    /// Limits of the battery at the end of the step.
+    pub power_limits: PowerLimits,
+    /// Worst ledger entry of the sub-steps.
+    pub ledger: LedgerEntry,
+    /// Thermal loads were cut because the battery could not feed them.
+    pub loads_shed: bool,
+}
+
+/// A vehicle ready to run: parameters, tables and assembled network. It never changes; all that does is in
+/// [`State`].
+#[derive(Debug, Clone)]
+pub struct Plant {
+    /// Parameters.
+    pub vehicle: VehicleParameters,
+    /// Physical ranges of the actuators.
+    pub ranges: ActuatorRanges,
+    /// Battery with its tables.
+    pub battery: Battery,
+    /// Thermal network.
+    pub assembly: Assembly,
+    /// Refrigerant loop.
+    pub refrigeration: RefrigerationCycle,
+    /// Refrigerant properties.
+    pub refrigerant: RefrigerantTable,
+    substeps: u32,
+}
+
+/// What the control layer fixed for one control period.
+struct Period {
+    demand: Demand,
+    ventilation: crate::components::cabin::Ventilation,
+    branches_w_k: [f64; BRANCH_COUNT],
+    htc_rate_w_k: f64,
+    chiller_rate_w_k: f64,
+    pumps_w: [f64; 2],
+    ptc_demand_w: f64,
+    compressor_demand_w: f64,
+    air: AirProperties,
+}
+
+impl Plant {
+    /// Prepares a vehicle.
+    ///
+    /// # Errors
+    /// The refrigerant is unknown or its table unusable with these parameters.
+    pub fn new(vehicle: VehicleParameters) -> PlantResult<Self> {
+        let table = RefrigerantTable::built_in(&vehicle.refrigerant)?;
+        Ok(Self {
+            ranges: ActuatorRanges::of(&vehicle),
+            battery: Battery::new(&vehicle.battery),
+            assembly: Assembly::of(&vehicle),
+            refrigeration: RefrigerationCycle::new(vehicle.refrigeration.clone(), table.clone())
+                .map_err(|violation| violation.within("refrigeration").in_file("vehicle"))?,
+            refrigerant: table,
+            vehicle,
+            substeps: 1,
+        })
+    }
+
+    /// Loads a vehicle by name with overrides.
+    ///
+    /// # Errors
+    /// See [`library::load`].
+    pub fn load(vehicle: &str, overrides: &[Override]) -> PlantResult<Self> {
+        Self::new(library::load(Kind::Vehicle, vehicle, overrides)?)
+    }
+
+    /// The same vehicle with each second integrated in several sub-steps; controllers stay at 1 s.
+    #[must_use]
+    pub fn with_substeps(mut self, substeps: u32) -> Self {
+        self.substeps = substeps.max(1);
+        self
+    }
+
+    /// A parked vehicle.
+    #[must_use]
+    pub fn parked(&self, initial: &InitialParameters) -> State {
+        let soak_k = initial.soak_temperature_degc.kelvin();
+        let nodes = &self.assembly.nodes;
+        let mut temperatures_k = [0.0; MAXIMUM_NODES];
+        temperatures_k[..self.assembly.network.nodes()].fill(soak_k);
+        if let Some(cabin) = initial.cabin_temperature_degc {
+            for node in [nodes.cabin, nodes.exhaust, nodes.soft, nodes.hard] {
+                temperatures_k[node.index()] = cabin.kelvin();
+            }
+        }
+        for (node, value) in [
+            (nodes.battery, initial.battery_temperature_degc),
+            (nodes.thermal_battery, initial.thermal_battery_temperature_degc),
+        ] {
+            if let Some(value) = value {
+                temperatures_k[node.index()] = value.kelvin();
+            }
+        }
+        State {
+            time_s: 0.0,
+            temperatures_k,
+            battery: self.battery.rested(initial.state_of_charge_pct / 100.0),
+            connected: [false; BRANCH_COUNT],
+            switches: [IncrementalPid::default(); BRANCH_COUNT],
+            htc_pump: self.vehicle.htc.circuit.pump.idle(),
+            chiller_pump: self.vehicle.chiller.circuit.pump.idle(),
+            ptc_pid: ResetPid::default(),
+            pressure_pid: ResetPid::default(),
+            refrigeration: RefrigerationState::parked(),
+            condensing_pressure_pa: self.refrigerant.saturation_pressure_pa(soak_k),
+            condenser_heat_flow_w: 0.0,
+            ptc_power_w: 0.0,
+            compressor_power_w: 0.0,
+        }
+    }
+
+    /// Steps the vehicle by one control period.
+    pub fn step(&self, state: &mut State, command: &Command, disturbance: &Disturbance) -> StepRecord {
+        self.step_with(state, command, disturbance, |_| {})
+    }
+
+    /// [`Plant::step`] with a hook that sees, and may falsify, the flows inside the vehicle before the thermal
+    /// network receives them; tests of the energy ledger use it.
+    #[doc(hidden)]
+    pub fn step_with(
+        &self,
+        state: &mut State,
+        command: &Command,
+        disturbance: &Disturbance,
+        mut tamper: impl FnMut(&mut Flows),
+    ) -> StepRecord {
+        let demand = self.ranges.decode(command);
+        let period = self.begin_period(state, demand, disturbance);
+        let mut record = self.substep(state, &period, disturbance, 0, &mut tamper);
+        let share = 1.0 / f64::from(self.substeps);
+        if self.substeps > 1 {
+            let mut mean = Flows::default();
+            mean.accumulate(&record.flows, share);
+            let (mut voltage_v, mut current_a) =
+                (record.battery_voltage_v * share, record.battery_current_a * share);
+            for part in 1..self.substeps {
+                let next = self.substep(state, &period, disturbance, part, &mut tamper);
+                mean.accumulate(&next.flows, share);
+                voltage_v += next.battery_voltage_v * share;
+                current_a += next.battery_current_a * share;
+                let worst =
+                    if next.ledger.relative() > record.ledger.relative() { next.ledger } else { record.ledger };
+                record = StepRecord { ledger: worst, loads_shed: next.loads_shed || record.loads_shed, ..next };
+            }
+            record.flows = mean;
+            record.battery_voltage_v = voltage_v;
+            record.battery_current_a = current_a;
+        }
+        state.time_s += CONTROL_PERIOD_S;
+        state.ptc_power_w = record.flows[Flow::Ptc];
+        state.compressor_power_w = record.flows[Flow::Compressor];
+        state.condenser_heat_flow_w = record.flows[Flow::Condenser];
+        state.ptc_pid.applied(&self.vehicle.ptc.pid, state.ptc_power_w, CONTROL_PERIOD_S);
+        state.pressure_pid.applied(
+            &self.vehicle.controls.pressure_pid,
+            state.compressor_power_w,
+            CONTROL_PERIOD_S,
+        );
+        record
+    }
+
+    /// Temperatures that decide about connections.
+    #[must_use]
+    pub fn branch_temperatures(&self, state: &State, recirculation: f64, ambient_k: f64) -> BranchTemperatures {
+        let nodes = &self.assembly.nodes;
+        let at = |node: crate::numerics::thermal_network::Node| state.temperatures_k[node.index()];
+        let htc_rate_w_k =
+            state.htc_pump.flow_kg_s * self.vehicle.htc.circuit.coolant_specific_heat_j_kg_k;
+        BranchTemperatures {
+            htc_supply_k: at(nodes.htc_supply),
+            condenser_outlet_k: at(nodes.htc_return) + state.condenser_heat_flow_w / htc_rate_w_k,
+            chiller_supply_k: at(nodes.chiller_supply),
+            battery_k: at(nodes.battery),
+            motor_k: at(nodes.motor),
+            transmission_k: at(nodes.transmission),
+            thermal_battery_k: at(nodes.thermal_battery),
+            core_inlet_k: (1.0 - recirculation) * ambient_k + recirculation * at(nodes.cabin),
+            ambient_k,
+        }
+    }
+
+    /// The plant's own controls, once a control period: connections, pumps, switches, PTC, pressure.
+    fn begin_period(&self, state: &mut State, demand: Demand, disturbance: &Disturbance) -> Period {
+        let vehicle = &self.vehicle;
+        let speed_m_s = 0.5 * (disturbance.start_speed_m_s + disturbance.end_speed_m_s);
+        let temperatures = self.branch_temperatures(state, demand.recirculation, disturbance.ambient_k);
+        state.connected = branches::grant(vehicle, &demand.connections, &temperatures, &state.connected);
+        vehicle.htc.circuit.pump.follow(&mut state.htc_pump, demand.htc_flow_kg_s, CONTROL_PERIOD_S);
+        vehicle.chiller.circuit.pump.follow(&mut state.chiller_pump, demand.chiller_flow_kg_s, CONTROL_PERIOD_S);
+        let flows = BranchFlows {
+            htc_rate_w_k: state.htc_pump.flow_kg_s * vehicle.htc.circuit.coolant_specific_heat_j_kg_k,
+            chiller_rate_w_k: state.chiller_pump.flow_kg_s * vehicle.chiller.circuit.coolant_specific_heat_j_kg_k,
+            ventilation: vehicle.cabin.ventilation(demand.blower_level, demand.recirculation),
+            speed_m_s,
+        };
+        let largest = branches::largest_conductances_w_k(vehicle, &demand, &flows, &state.connected);
+        let mut branches_w_k = [0.0; BRANCH_COUNT];
+        for (i, branch) in Branch::ALL.into_iter().enumerate() {
+            branches_w_k[i] = largest[i]
+                * thermal_switch::track(
+                    &mut state.switches[i],
+                    &vehicle.controls.thermal_switch.pid,
+                    demand.requests_w[branch.member() as usize],
+                    largest[i],
+                    temperatures.difference_k(branch),
+                    CONTROL_PERIOD_S,
+                );
+        }
+        Period {
+            demand,
+            ventilation: flows.ventilation,
+            branches_w_k,
+            htc_rate_w_k: flows.htc_rate_w_k,
+            chiller_rate_w_k: flows.chiller_rate_w_k,
+            pumps_w: [
+                vehicle.htc.circuit.pump.power_w(state.htc_pump.flow_kg_s),
+                vehicle.chiller.circuit.pump.power_w(state.chiller_pump.flow_kg_s),
+            ],
+            ptc_demand_w: self.ptc_demand_w(state, &demand),
+            compressor_demand_w: self.compressor_demand_w(state, &demand),
+            air: air::at_temperature(disturbance.ambient_k),
+        }
+    }
+
+    /// PTC power that its PID on the cabin temperature asks for.
+    fn ptc_demand_w(&self, state: &mut State, demand: &Demand) -> f64 {
+        let ptc = &self.vehicle.ptc;
+        if !demand.ptc_allowed {
+            state.ptc_pid.clear();
+            return 0.0;
+        }
+        let error_k = demand.cabin_set_point_k - state.temperatures_k[self.assembly.nodes.cabin.index()];
+        state.ptc_pid.output(&ptc.pid, error_k, CONTROL_PERIOD_S, 0.0, ptc.maximum_power_w)
+    }
+
+    /// Smaller of the controller's demand and that of `PID_pressureControl` (paper section 2.3).
+    fn compressor_demand_w(&self, state: &mut State, demand: &Demand) -> f64 {
+        let refrigeration = &self.vehicle.refrigeration;
+        let error_bar = refrigeration.maximum_pressure_bar - state.condensing_pressure_pa / PASCAL_PER_BAR;
+        let pressure_w = state.pressure_pid.output(
+            &self.vehicle.controls.pressure_pid,
+            error_bar,
+            CONTROL_PERIOD_S,
+            0.0,
+            refrigeration.compressor.maximum_power_w,
+        );
+        demand.compressor_power_w.min(pressure_w)
+    }
+
+    /// One integration step: traction demand, refrigerant loop, thermal loads, regeneration and battery,
+    /// thermal network, ledger.
+    fn substep(
+        &self,
+        state: &mut State,
+        period: &Period,
+        disturbance: &Disturbance,
+        part: u32,
+        tamper: &mut impl FnMut(&mut Flows),
+    ) -> StepRecord {
+        let vehicle = &self.vehicle;
+        let nodes = &self.assembly.nodes;
+        let step_s = CONTROL_PERIOD_S / f64::from(self.substeps);
+        let acceleration = (disturbance.end_speed_m_s - disturbance.start_speed_m_s) / CONTROL_PERIOD_S;
+        let start_m_s = disturbance.start_speed_m_s + acceleration * step_s * f64::from(part);
+        let end_m_s = start_m_s + acceleration * step_s;
+        let speed_m_s = 0.5 * (start_m_s + end_m_s);
+        let mut flows = Flows::default();
+
+        // Traction demand.
+        let road = vehicle.body.road_load(start_m_s, end_m_s, step_s, period.air.density_kg_m3);
+        let wheel_w = road.wheel_power_w();
+        let oil_k = state.temperatures_k[nodes.transmission.index()];
+        let powertrain = Powertrain {
+            motor: &vehicle.motor,
+            transmission: &vehicle.transmission,
+            regeneration: &vehicle.regeneration,
+            speed_m_s,
+            spin_loss_w: vehicle.transmission.spin_loss_w(oil_k, speed_m_s),
+        };
+        let driving = (wheel_w >= 0.0).then(|| powertrain.drive(wheel_w));
+        flows[Flow::Drag] = road.drag_power_w;
+        flows[Flow::Rolling] = road.rolling_power_w;
+        flows[Flow::Kinetic] = road.kinetic_power_w;
+        flows[Flow::Wheel] = wheel_w;
+
+        // Loads that are always there.
+        flows[Flow::Auxiliary] = vehicle.controls.auxiliary_power_w;
+        [flows[Flow::HtcPump], flows[Flow::ChillerPump]] = period.pumps_w;
+        flows[Flow::Blower] = period.ventilation.blower_power_w;
+        flows[Flow::Fan] = self.fan_power_w(state, speed_m_s);
+        flows[Flow::Solar] = disturbance.solar_gain_w;
+        flows[Flow::Occupants] = disturbance.occupants * vehicle.cabin.occupant_heat_w;
+
+        // What the battery can still give to thermal loads.
+        let battery_k = state.temperatures_k[nodes.battery.index()];
+        let circuit = self.battery.during(&state.battery, battery_k, step_s);
+        let limits = circuit.power_limits();
+        let driving_w = driving.map_or(0.0, |flow| flow.electrical_power_w);
+        let spare_w = (limits.discharge_w - driving_w - flows.base_load_w()).max(0.0);
+
+        // Refrigerant loop, its caps at the end of the step included.
+        let conditions = self.link_conditions(state, period, disturbance, speed_m_s);
+        let links = self.assembly.links(vehicle, &conditions);
+        let factorised = self.assembly.network.factorise(&links, step_s);
+        if let Some(driving) = driving {
+            flows[Flow::MotorLoss] = driving.motor_loss_w;
+            flows[Flow::TransmissionLoss] = driving.transmission_loss_w;
+        }
+        let without_heat_pump_k =
+            factorised.advance(&state.temperatures_k, &self.heat_sources(&flows, &conditions));
+        let hot_response = factorised.response(&self.assembly.condenser_sources(1.0, &conditions));
+        let mut cold_source = NodeValues::default();
+        cold_source[nodes.chiller_supply.index()] = 1.0;
+        let cold_response = factorised.response(&cold_source);
+        let boundary = LoopBoundary {
+            hot_return_k: state.temperatures_k[nodes.htc_return.index()],
+            cold_return_k: state.temperatures_k[nodes.chiller_return.index()],
+            hot_capacity_rate_w_k: period.htc_rate_w_k,
+            cold_capacity_rate_w_k: period.chiller_rate_w_k,
+            hot_supply: SupplyLimit {
+                base_k: without_heat_pump_k[nodes.htc_supply.index()],
+                sensitivity_k_w: hot_response[nodes.htc_supply.index()],
+                limit_k: vehicle.htc.maximum_supply_degc.kelvin(),
+            },
+            cold_supply: SupplyLimit {
+                base_k: without_heat_pump_k[nodes.chiller_supply.index()],
+                sensitivity_k_w: cold_response[nodes.chiller_supply.index()],
+                limit_k: vehicle.chiller.minimum_supply_degc.kelvin(),
+            },
+        };
+        let compressor_w = period.compressor_demand_w.min(spare_w);
+        let refrigeration =
+            self.refrigeration.step(&mut state.refrigeration, &boundary, compressor_w, step_s, part == 0);
+        flows[Flow::Compressor] = refrigeration.electric_power_w;
+        flows[Flow::CompressorLoss] = refrigeration.loss_to_ambient_w;
+        flows[Flow::Condenser] = refrigeration.condenser_heat_flow_w;
+        flows[Flow::Evaporator] = refrigeration.evaporator_heat_flow_w;
+
+        // PTC, off above its cut-off temperature: just enough to end the step there, continuous in all it
+        // depends on.
+        let hot_supply_k = boundary.hot_supply.base_k
+            + boundary.hot_supply.sensitivity_k_w * refrigeration.condenser_heat_flow_w;
+        let to_cutoff_w =
+            (vehicle.ptc.cutoff_degc.kelvin() - hot_supply_k) / boundary.hot_supply.sensitivity_k_w;
+        let ptc_spare_w = (spare_w - refrigeration.electric_power_w).max(0.0);
+        let ptc_w = period.ptc_demand_w.min(to_cutoff_w.max(0.0));
+        flows[Flow::Ptc] = ptc_w.min(ptc_spare_w);
+        let loads_shed = compressor_w < period.compressor_demand_w || flows[Flow::Ptc] < ptc_w;
+
+        // Regeneration against the charge limit with this step's loads, then the battery.
+        let loads_w = flows.base_load_w() + flows[Flow::Compressor] + flows[Flow::Ptc];
+        let traction = driving.unwrap_or_else(|| powertrain.brake(-wheel_w, limits.charge_w + loads_w));
+        flows[Flow::Traction] = traction.electrical_power_w;
+        flows[Flow::MotorLoss] = traction.motor_loss_w;
+        flows[Flow::TransmissionLoss] = traction.transmission_loss_w;
+        flows[Flow::FrictionBrake] = traction.friction_brake_power_w;
+        let battery = self.draw(&circuit, &limits, loads_w, &mut flows);
+
+        // Thermal network.
+        tamper(&mut flows);
+        let start_k = state.temperatures_k;
+        let end_k = factorised.advance(&start_k, &self.heat_sources(&flows, &conditions));
+        self.assembly.record_flows(&links, &conditions, &end_k, &mut flows);
+
+        // Ledger.
+        let stored = StoredEnergyChange {
+            kinetic_j: vehicle.body.kinetic_energy_j(end_m_s) - vehicle.body.kinetic_energy_j(start_m_s),
+            chemical_j: self.battery.chemical_energy_j(&battery.state)
+                - self.battery.chemical_energy_j(&state.battery),
+            polarisation_j: self.battery.polarisation_energy_j(&battery.state)
+                - self.battery.polarisation_energy_j(&state.battery),
+            heat_j: self.assembly.network.heat_gained_j(&start_k, &end_k),
+        };
+        let ledger = ledger::balance(&flows, &stored, step_s);
+
+        state.temperatures_k = end_k;
+        state.battery = battery.state;
+        state.condensing_pressure_pa = refrigeration.condensing_pressure_pa;
+        StepRecord {
+            flows,
+            demand: period.demand,
+            granted: self.granted(state),
+            compressor_demand_w: period.compressor_demand_w,
+            refrigeration,
+            battery_voltage_v: battery.voltage_v,
+            battery_current_a: battery.current_a,
+            power_limits: limits,
+            ledger,
+            loads_shed,
+        }
+    }
+
+    /// Draws all electrical power from the battery; what it cannot deliver goes unserved.
+    fn draw(&self, circuit: &CircuitStep<'_>, limits: &PowerLimits, loads_w: f64, flows: &mut Flows) -> BatteryStep {
+        let wanted_w = flows[Flow::Traction] + loads_w;
+        let delivered_w = wanted_w.min(limits.discharge_w);
+        let battery = circuit.draw(delivered_w);
+        // Formed from what the circuit really delivered, so that round-off of its solution is not lost.
+        flows[Flow::Unserved] = if wanted_w > limits.discharge_w { wanted_w - battery.terminal_power_w } else { 0.0 };
+        flows[Flow::Battery] = battery.terminal_power_w;
+        flows[Flow::Chemical] = battery.chemical_power_w;
+        flows[Flow::BatteryLoss] = battery.loss_w;
+        battery
+    }
+
+    /// Fan of the front-end exchanger, on while that is connected [W].
+    fn fan_power_w(&self, state: &State, speed_m_s: f64) -> f64 {
+        let connected = state.connected[Branch::AmbientHtc as usize] || state.connected[Branch::AmbientChiller as usize];
+        if connected { self.vehicle.ambient_exchanger.fan_power_w(speed_m_s) } else { 0.0 }
+    }
+
+    /// What the links of the thermal network depend on during a step.
+    fn link_conditions(
+        &self,
+        state: &State,
+        period: &Period,
+        disturbance: &Disturbance,
+        speed_m_s: f64,
+    ) -> LinkConditions {
+        let nodes = &self.assembly.nodes;
+        let cabin_k = state.temperatures_k[nodes.cabin.index()];
+        let lowest_k = state.temperatures_k[nodes.chiller_supply.index()] + RECOVERY_APPROACH_K;
+        let recovers = state.connected[Branch::CabinHtc as usize]
+            && cabin_k > lowest_k
+            && cabin_k > disturbance.ambient_k;
+        let recovery_w_k = self.vehicle.cabin.exhaust_recovery_share * period.ventilation.fresh_rate_w_k;
+        LinkConditions {
+            htc_rate_w_k: period.htc_rate_w_k,
+            chiller_rate_w_k: period.chiller_rate_w_k,
+            branches_w_k: period.branches_w_k,
+            ventilation: period.ventilation,
+            recovery_w_k: if recovers { recovery_w_k } else { 0.0 },
+            recovery_meets_chiller: lowest_k > disturbance.ambient_k,
+            speed_m_s,
+            battery_ambient_w_k: self.vehicle.battery.plate.conductance_to_ambient_w_k(speed_m_s, &period.air),
+            ambient_k: disturbance.ambient_k,
+        }
+    }
+
+    /// Heat that flows bring into the nodes [W].
+    fn heat_sources(&self, flows: &Flows, conditions: &LinkConditions) -> NodeValues {
+        let nodes = &self.assembly.nodes;
+        let mut sources = self.assembly.condenser_sources(flows[Flow::Condenser], conditions);
+        sources[nodes.htc_supply.index()] += flows[Flow::Ptc];
+        sources[nodes.htc_return.index()] += flows[Flow::HtcPump];
+        sources[nodes.chiller_supply.index()] -= flows[Flow::Evaporator];
+        sources[nodes.chiller_return.index()] += flows[Flow::ChillerPump];
+        sources[nodes.motor.index()] += flows[Flow::MotorLoss];
+        sources[nodes.transmission.index()] += flows[Flow::TransmissionLoss];
+        sources[nodes.battery.index()] += flows[Flow::BatteryLoss];
+        sources[nodes.cabin.index()] += flows[Flow::Blower] + flows[Flow::Solar] + flows[Flow::Occupants];
+        sources
+    }
+
+    /// Connection of each member.
+    fn granted(&self, state: &State) -> [Connection; 6] {
+        let mut granted = [Connection::Isolated; 6];
+        for (branch, connected) in Branch::ALL.into_iter().zip(state.connected) {
+            if connected {
+                granted[branch.member() as usize] = branch.connection();
+            }
+        }
+        granted
+    }
+}

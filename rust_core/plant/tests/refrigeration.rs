@@ -1,0 +1,315 @@
+//! The refrigeration loop over its whole range: convergence, balances, second law, limits, envelope.
+
+#[path = "support/refrigeration.rs"]
+mod support;
+
+use hp_plant::circuits::refrigeration_cycle::RefrigerationCycle;
+use hp_plant::circuits::refrigeration_loop::{
+    Limit, LoopBoundary, LoopDemand, LoopResult, LoopStatus, RefrigerationState, SupplyLimit, WarmStart,
+};
+use hp_plant::components::heat_exchanger::inlet_conductance_w_k;
+use hp_plant::config::Validate;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRunner};
+use support::{boundary, cycle, parameters};
+
+const CASES: u32 = if cfg!(debug_assertions) { 5_000 } else { 50_000 };
+const SPEED_LIMIT: f64 = 140.0;
+
+fn demand(power_limit_w: f64) -> LoopDemand {
+    LoopDemand { power_limit_w, speed_limit_rev_s: SPEED_LIMIT, hold_minimum_speed: false }
+}
+
+/// Everything that the plant may ask for, hot colder than cold included.
+fn any_boundary() -> impl Strategy<Value = LoopBoundary> {
+    let temperatures = (-40.0..95.0_f64, -40.0..50.0_f64);
+    let rates = (50.0..2000.0_f64, 50.0..2000.0_f64);
+    let sensitivities = (0.0..3e-3_f64, 0.0..3e-3_f64);
+    (temperatures, rates, sensitivities, any::<bool>()).prop_map(
+        |((hot, cold), (hot_w_k, cold_w_k), s, capped)| {
+            let mut boundary = boundary(hot, cold, hot_w_k, cold_w_k);
+            if capped {
+                let (base_k, limit_k) = (boundary.hot_return_k - 1.0, 90.0 + 273.15);
+                boundary.hot_supply = SupplyLimit { base_k, sensitivity_k_w: s.0, limit_k };
+                let (base_k, limit_k) = (boundary.cold_return_k + 1.0, -10.0 + 273.15);
+                boundary.cold_supply = SupplyLimit { base_k, sensitivity_k_w: s.1, limit_k };
+            }
+            boundary
+        },
+    )
+}
+
+fn any_demand() -> impl Strategy<Value = LoopDemand> {
+    (0.0..5000.0_f64, 14.0..SPEED_LIMIT, any::<bool>()).prop_map(
+        |(power_limit_w, speed_limit_rev_s, hold_minimum_speed)| LoopDemand {
+            power_limit_w,
+            speed_limit_rev_s,
+            hold_minimum_speed,
+        },
+    )
+}
+
+fn any_warm_start() -> impl Strategy<Value = Option<WarmStart>> {
+    let limits = [Limit::Power, Limit::Speed, Limit::MinimumSpeed, Limit::Pressure, Limit::Suction]
+        .into_iter()
+        .chain([Limit::HotCoolant, Limit::ColdCoolant, Limit::Discharge])
+        .collect::<Vec<_>>();
+    proptest::option::of(
+        (200.0..330.0_f64, 220.0..370.0_f64, 0.0..200.0_f64, prop::sample::select(limits)).prop_map(
+            |(evaporating_k, condensing_k, speed_rev_s, limit)| WarmStart {
+                evaporating_k,
+                condensing_k,
+                speed_rev_s,
+                limit,
+            },
+        ),
+    )
+}
+
+fn for_all<S: Strategy>(strategy: S, check: impl Fn(S::Value) -> Result<(), TestCaseError>) {
+    let config = Config { cases: CASES, failure_persistence: None, ..Config::default() };
+    let rng = proptest::test_runner::TestRng::deterministic_rng(prop::test_runner::RngAlgorithm::ChaCha);
+    if let Err(error) = TestRunner::new_with_rng(config, rng).run(&strategy, check) {
+        panic!("{error}");
+    }
+}
+
+/// Balances, second law and limits of a running loop.
+fn check_running(
+    cycle: &RefrigerationCycle,
+    b: &LoopBoundary,
+    d: &LoopDemand,
+    r: &LoopResult,
+) -> Result<(), TestCaseError> {
+    let p = parameters();
+    let evaporator = inlet_conductance_w_k(b.cold_capacity_rate_w_k, p.evaporator_ua_w_k);
+    let condenser = inlet_conductance_w_k(b.hot_capacity_rate_w_k, p.condenser_ua_w_k);
+    let taken = evaporator * (b.cold_return_k - r.evaporating_temperature_k);
+    let given = condenser * (r.condensing_temperature_k - b.hot_return_k);
+    prop_assert!((taken - r.evaporator_heat_flow_w).abs() < 0.1, "evaporator {taken}: {r:?}");
+    prop_assert!((given - r.condenser_heat_flow_w).abs() < 0.1, "condenser {given}: {r:?}");
+    let shaft_w = r.electric_power_w - r.loss_to_ambient_w;
+    let balance = r.condenser_heat_flow_w - r.evaporator_heat_flow_w - shaft_w;
+    prop_assert!(balance.abs() < 1e-6, "balance {balance}: {r:?}");
+    if b.hot_return_k > b.cold_return_k {
+        let carnot = b.hot_return_k / (b.hot_return_k - b.cold_return_k);
+        prop_assert!(r.condenser_heat_flow_w / shaft_w < carnot, "{r:?}");
+    }
+    for margin in cycle.stream_margins_k(b, r) {
+        prop_assert!(margin > -1e-9, "{:?} {r:?}", cycle.stream_margins_k(b, r));
+    }
+    prop_assert!(r.speed_rev_s >= p.compressor.minimum_speed_rev_s * (1.0 - 1e-6), "{r:?}");
+    prop_assert!(r.speed_rev_s <= d.speed_limit_rev_s * (1.0 + 1e-6), "{r:?}");
+    prop_assert!(r.condensing_pressure_pa <= 30.01e5, "{r:?}");
+    prop_assert!(r.evaporating_pressure_pa >= 0.2e5 * (1.0 - 1e-4), "{r:?}");
+    prop_assert!(r.discharge_temperature_k <= 130.0 + 273.15 + 1e-4, "{r:?}");
+    let hot = b.hot_supply.base_k + b.hot_supply.sensitivity_k_w * r.condenser_heat_flow_w;
+    let cold = b.cold_supply.base_k - b.cold_supply.sensitivity_k_w * r.evaporator_heat_flow_w;
+    prop_assert!(hot <= b.hot_supply.limit_k + 1e-4 && cold >= b.cold_supply.limit_k - 1e-4, "{r:?}");
+    if r.status != LoopStatus::MinimumSpeed {
+        prop_assert!(r.electric_power_w <= d.power_limit_w + 1e-3, "{r:?}");
+    }
+    let at_limit = match r.limited_by {
+        Limit::Power => (r.electric_power_w - d.power_limit_w).abs() < 1e-3,
+        Limit::Speed => (r.speed_rev_s - d.speed_limit_rev_s).abs() < 1e-6,
+        Limit::MinimumSpeed => (r.speed_rev_s - p.compressor.minimum_speed_rev_s).abs() < 1e-6,
+        Limit::Pressure => (r.condensing_pressure_pa - 30e5).abs() < 1e3,
+        Limit::Suction => (r.evaporating_pressure_pa - 0.2e5).abs() < 10.0,
+        Limit::HotCoolant => (hot - b.hot_supply.limit_k).abs() < 1e-4,
+        Limit::ColdCoolant => (cold - b.cold_supply.limit_k).abs() < 1e-4,
+        Limit::Discharge => (r.discharge_temperature_k - 403.15).abs() < 1e-4,
+        Limit::CoolantFlow => false,
+    };
+    prop_assert!(at_limit, "not at the limit that is reported: {r:?}");
+    Ok(())
+}
+
+#[test]
+fn every_operating_point_is_solved_within_all_limits() {
+    let cycle = cycle();
+    parameters().validate().expect("the test parameters are in range");
+    for_all((any_boundary(), any_demand(), any_warm_start()), |(b, d, warm)| {
+        let result = cycle.solve(&b, &d, warm.as_ref());
+        if result.running() {
+            check_running(&cycle, &b, &d, &result)?;
+        } else {
+            prop_assert_eq!(
+                result.electric_power_w + result.condenser_heat_flow_w + result.mass_flow_kg_s,
+                0.0
+            );
+            prop_assert!(result.limited_by != Limit::CoolantFlow);
+        }
+        Ok(())
+    });
+}
+
+#[test]
+fn the_start_values_do_not_matter() {
+    let cycle = cycle();
+    for_all((any_boundary(), any_demand(), any_warm_start()), |(b, d, warm)| {
+        let (cold, warm) = (cycle.solve(&b, &d, None), cycle.solve(&b, &d, warm.as_ref()));
+        prop_assert_eq!(cold.status, warm.status, "{:?} {:?}", cold, warm);
+        let close = |a: f64, b: f64| (a - b).abs() <= 1e-6 * a.abs().max(1.0);
+        prop_assert!(close(cold.electric_power_w, warm.electric_power_w), "{:?} {:?}", cold, warm);
+        prop_assert!(close(cold.condenser_heat_flow_w, warm.condenser_heat_flow_w), "{:?} {:?}", cold, warm);
+        prop_assert!(close(cold.evaporating_temperature_k, warm.evaporating_temperature_k));
+        prop_assert!(close(cold.speed_rev_s, warm.speed_rev_s), "{:?} {:?}", cold, warm);
+        Ok(())
+    });
+}
+
+#[test]
+fn more_demand_never_gives_less_power_or_heat() {
+    let cycle = cycle();
+    for_all((any_boundary(), any_demand(), 0.0..1000.0_f64), |(b, d, more)| {
+        let stronger = LoopDemand { power_limit_w: d.power_limit_w + more, ..d };
+        let (low, high) = (cycle.solve(&b, &d, None), cycle.solve(&b, &stronger, None));
+        prop_assert!(high.electric_power_w >= low.electric_power_w - 1e-4, "{:?} {:?}", low, high);
+        prop_assert!(high.condenser_heat_flow_w >= low.condenser_heat_flow_w - 1e-2, "{:?} {:?}", low, high);
+        Ok(())
+    });
+}
+
+#[test]
+fn the_same_question_has_the_same_answer_to_the_last_bit() {
+    let cycle = cycle();
+    let warm =
+        WarmStart { evaporating_k: 260.0, condensing_k: 330.0, speed_rev_s: 40.0, limit: Limit::Power };
+    let b = boundary(45.0, -5.0, 900.0, 700.0);
+    let first = cycle.solve(&b, &demand(1500.0), Some(&warm));
+    assert_eq!(first, cycle.solve(&b, &demand(1500.0), Some(&warm)));
+}
+
+#[test]
+fn every_status_is_reached() {
+    let cycle = cycle();
+    let solve = |b: &LoopBoundary, d: LoopDemand| cycle.solve(b, &d, None);
+    let ordinary = boundary(40.0, 0.0, 800.0, 700.0);
+    assert_eq!(solve(&ordinary, demand(1500.0)).status, LoopStatus::Converged);
+    assert_eq!(solve(&ordinary, demand(0.0)).status, LoopStatus::Off);
+    assert_eq!(solve(&ordinary, demand(40.0)).limited_by, Limit::Power);
+    let slow = LoopDemand { speed_limit_rev_s: 20.0, ..demand(5000.0) };
+    assert_eq!(solve(&ordinary, slow).status, LoopStatus::SpeedLimited);
+    let held = LoopDemand { hold_minimum_speed: true, ..demand(0.0) };
+    assert_eq!(solve(&ordinary, held).status, LoopStatus::MinimumSpeed);
+    assert_eq!(solve(&boundary(5.0, 40.0, 800.0, 700.0), demand(60.0)).status, LoopStatus::NoLift);
+    assert_eq!(
+        solve(&boundary(78.0, 20.0, 300.0, 900.0), demand(5000.0)).status,
+        LoopStatus::PressureLimited
+    );
+    let mut guarded = parameters();
+    guarded.minimum_suction_pressure_bar = 1.0;
+    let guarded =
+        RefrigerationCycle::new(guarded, cycle.table().clone()).expect("the parameters fit the table");
+    let result = guarded.solve(&boundary(10.0, -22.0, 900.0, 900.0), &demand(3000.0), None);
+    assert_eq!(result.status, LoopStatus::SuctionLimited);
+    let hot = solve(&boundary(70.0, -30.0, 900.0, 900.0), demand(5000.0));
+    assert_eq!(hot.status, LoopStatus::DischargeLimited);
+    let mut capped = ordinary;
+    capped.cold_supply = SupplyLimit { base_k: 271.0, sensitivity_k_w: 2e-3, limit_k: 263.15 };
+    let result = solve(&capped, demand(5000.0));
+    assert_eq!((result.status, result.limited_by), (LoopStatus::CoolantLimited, Limit::ColdCoolant));
+    let mut capped = ordinary;
+    capped.hot_supply = SupplyLimit { base_k: 355.0, sensitivity_k_w: 2e-3, limit_k: 363.15 };
+    let result = solve(&capped, demand(5000.0));
+    assert_eq!((result.status, result.limited_by), (LoopStatus::CoolantLimited, Limit::HotCoolant));
+}
+
+#[test]
+fn what_is_beyond_a_limit_already_stays_off_and_says_why() {
+    let cycle = cycle();
+    let off = |b: &LoopBoundary| {
+        let result = cycle.solve(b, &demand(3000.0), None);
+        assert_eq!(result.status, LoopStatus::Off);
+        result.limited_by
+    };
+    assert_eq!(off(&boundary(86.3, 20.0, 800.0, 700.0)), Limit::Pressure);
+    assert_eq!(off(&boundary(20.0, -57.0, 800.0, 700.0)), Limit::Suction);
+    assert_eq!(off(&boundary(20.0, 0.0, 0.0, 700.0)), Limit::CoolantFlow);
+    assert_eq!(off(&boundary(f64::NAN, 0.0, 800.0, 700.0)), Limit::CoolantFlow);
+    let mut cold = boundary(40.0, -10.0, 800.0, 700.0);
+    cold.cold_supply.limit_k = cold.cold_supply.base_k + 0.1;
+    assert_eq!(off(&cold), Limit::ColdCoolant);
+}
+
+#[test]
+fn start_waits_for_a_whole_second_and_for_the_minimum_off_time() {
+    let (cycle, b) = (cycle(), boundary(30.0, 0.0, 800.0, 700.0));
+    let mut state = RefrigerationState::parked();
+    assert!(!cycle.step(&mut state, &b, 1000.0, 0.1, false).running());
+    assert!(cycle.step(&mut state, &b, 1000.0, 0.1, true).running());
+    let mut on_s = 0.1;
+    while cycle.step(&mut state, &b, 0.0, 0.1, false).running() {
+        on_s += 0.1;
+    }
+    assert!((on_s - parameters().compressor.minimum_on_time_s).abs() < 0.01, "{on_s}");
+    let mut off_s = 0.1;
+    while !cycle.step(&mut state, &b, 1000.0, 0.1, true).running() {
+        off_s += 0.1;
+    }
+    assert!((off_s - parameters().compressor.minimum_off_time_s).abs() < 0.01, "{off_s}");
+    assert_eq!((state.compressor.starts, state.compressor.protection_trips), (2, 0));
+}
+
+#[test]
+fn start_loss_is_the_same_energy_at_every_step_length() {
+    let (cycle, b) = (cycle(), boundary(30.0, 0.0, 800.0, 700.0));
+    for step_s in [1.0, 0.5, 0.3, 0.05] {
+        let mut state = RefrigerationState::parked();
+        let mut loss_j = 0.0;
+        for _ in 0..60 {
+            let result = cycle.step(&mut state, &b, 1000.0, step_s, true);
+            let balance = result.condenser_heat_flow_w + result.loss_to_ambient_w
+                - result.evaporator_heat_flow_w
+                - result.electric_power_w;
+            assert!(balance.abs() < 1e-6);
+            loss_j += result.start_loss_w * step_s;
+        }
+        assert!((loss_j - 2000.0).abs() < 1e-6, "{step_s} {loss_j}");
+    }
+}
+
+#[test]
+fn speed_rises_with_the_ramp_and_falls_with_the_demand() {
+    let (cycle, b) = (cycle(), boundary(30.0, 0.0, 800.0, 700.0));
+    let mut state = RefrigerationState::parked();
+    let mut last = parameters().compressor.minimum_speed_rev_s;
+    for _ in 0..100 {
+        let result = cycle.step(&mut state, &b, 1500.0, 0.1, true);
+        assert!(result.speed_rev_s <= last + 2.0 + 1e-6);
+        last = result.speed_rev_s;
+    }
+    assert_eq!(cycle.step(&mut state, &b, 1500.0, 0.1, true).status, LoopStatus::Converged);
+    assert!(cycle.step(&mut state, &b, 700.0, 0.1, true).electric_power_w < 700.001);
+}
+
+#[test]
+fn a_limit_that_leaves_no_room_trips_even_within_the_minimum_on_time() {
+    let (cycle, mut b) = (cycle(), boundary(30.0, 0.0, 800.0, 700.0));
+    let mut state = RefrigerationState::parked();
+    assert!(cycle.step(&mut state, &b, 1000.0, 1.0, true).running());
+    b.cold_supply = SupplyLimit { base_k: 263.2, sensitivity_k_w: 2e-3, limit_k: 263.15 };
+    let result = cycle.step(&mut state, &b, 1000.0, 1.0, true);
+    assert_eq!((result.status, result.limited_by), (LoopStatus::Off, Limit::ColdCoolant));
+    assert_eq!(state.compressor.protection_trips, 1);
+}
+
+#[test]
+fn leakage_makes_the_lowest_speed_a_poor_choice() {
+    let compressor = parameters().compressor;
+    let at = |speed: f64| compressor.efficiency(4.0, speed);
+    assert!(at(13.3).isentropic < 0.9 * at(50.0).isentropic);
+    assert!(at(13.3).volumetric < 0.9 * at(50.0).volumetric);
+}
+
+#[test]
+fn parameters_that_contradict_the_table_are_refused_by_name() {
+    let table = || hp_plant::media::refrigerant::RefrigerantTable::built_in("R134a").expect("built in");
+    let mut high = parameters();
+    high.maximum_pressure_bar = 40.0;
+    assert_eq!(RefrigerationCycle::new(high, table()).expect_err("too high").key, "maximum_pressure_bar");
+    let mut speed = parameters();
+    speed.compressor.minimum_speed_rev_s = 150.0;
+    let key = RefrigerationCycle::new(speed, table()).expect_err("crossed").key;
+    assert_eq!(key, "compressor.minimum_speed_rev_s");
+}

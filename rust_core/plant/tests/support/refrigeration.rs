@@ -1,0 +1,59 @@
+//! A refrigeration loop with round numbers, shared by tests and examples; not a vehicle of the paper.
+
+use hp_plant::circuits::refrigeration_cycle::RefrigerationCycle;
+use hp_plant::circuits::refrigeration_loop::{LoopBoundary, SupplyLimit};
+use hp_plant::config::refrigeration::{CompressorParameters, RefrigerationParameters};
+use hp_plant::media::refrigerant::RefrigerantTable;
+
+/// Parameters of the test loop.
+pub fn parameters() -> RefrigerationParameters {
+    RefrigerationParameters {
+        condenser_ua_w_k: 700.0,
+        evaporator_ua_w_k: 600.0,
+        superheat_k: 5.0,
+        subcooling_k: 5.0,
+        maximum_pressure_bar: 30.0,
+        minimum_suction_pressure_bar: 0.2,
+        compressor: CompressorParameters {
+            displacement_cm3: 33.0,
+            minimum_speed_rev_s: 13.3,
+            maximum_speed_rev_s: 140.0,
+            speed_ramp_rev_s2: 20.0,
+            maximum_power_w: 5000.0,
+            minimum_power_w: 30.0,
+            minimum_on_time_s: 30.0,
+            minimum_off_time_s: 60.0,
+            start_loss_j: 2000.0,
+            maximum_discharge_temperature_degc: 130.0,
+            volumetric_efficiency_at_unity: 1.0,
+            volumetric_efficiency_slope: 0.02,
+            leakage_share: 0.1,
+            isentropic_efficiency_peak: 0.72,
+            isentropic_peak_pressure_ratio: 2.5,
+            isentropic_pressure_ratio_loss: 0.35,
+            isentropic_speed_loss: 0.6,
+            electrical_efficiency: 0.9,
+            minimum_pressure_ratio: 1.1,
+        },
+    }
+}
+
+/// The test loop with R134a.
+pub fn cycle() -> RefrigerationCycle {
+    let table = RefrigerantTable::built_in("R134a").expect("R134a is built in");
+    RefrigerationCycle::new(parameters(), table).expect("the parameters fit the table")
+}
+
+/// Coolants without supply limits in reach; temperatures in degC.
+#[allow(dead_code, reason = "not every user of this file needs it")]
+pub fn boundary(hot_return_degc: f64, cold_return_degc: f64, hot_w_k: f64, cold_w_k: f64) -> LoopBoundary {
+    let (hot_return_k, cold_return_k) = (hot_return_degc + 273.15, cold_return_degc + 273.15);
+    LoopBoundary {
+        hot_return_k,
+        cold_return_k,
+        hot_capacity_rate_w_k: hot_w_k,
+        cold_capacity_rate_w_k: cold_w_k,
+        hot_supply: SupplyLimit { base_k: hot_return_k, sensitivity_k_w: 0.0, limit_k: 500.0 },
+        cold_supply: SupplyLimit { base_k: cold_return_k, sensitivity_k_w: 0.0, limit_k: 100.0 },
+    }
+}

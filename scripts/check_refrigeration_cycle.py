@@ -1,0 +1,188 @@
+"""Compares the refrigeration loop of the Rust plant with independent calculations.
+
+CoolProp: own equations on real properties, solved with SciPy; finds saturation temperatures and speed by itself.
+TESPy: a component network at the saturation temperatures and evaporator duty of the Rust solution.
+
+    python scripts/check_refrigeration_cycle.py
+"""
+
+import csv
+import math
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import CoolProp
+from scipy.optimize import root
+
+ROOT = Path(__file__).parents[1]
+REFRIGERANT = "R134a"
+TOLERANCE = 1e-3
+
+Point = dict[str, Any]
+
+
+def rust_points() -> tuple[dict[str, Any], list[Point]]:
+    """Parameters and operating points as the Rust example prints them."""
+    command = ["cargo", "run", "--quiet", "--release", "--example", "refrigeration_points"]
+    text = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    lines = text.splitlines()
+    parameters = tomllib.loads("\n".join(line[2:] for line in lines if line.startswith("# ")))
+    rows = csv.DictReader(line for line in lines if not line.startswith("#"))
+    points = [{key: value if key == "status" else float(value) for key, value in row.items()} for row in rows]
+    return parameters, points
+
+
+def efficiencies(compressor: dict[str, float], ratio: float, speed: float) -> tuple[float, float]:
+    """Volumetric and isentropic efficiency."""
+    leakage = (
+        compressor["leakage_share"]
+        * (compressor["minimum_speed_rev_s"] / speed)
+        * (ratio - 1.0)
+        / math.sqrt(ratio / 2.0)
+    )
+    filling = compressor["volumetric_efficiency_at_unity"] * math.exp(
+        -compressor["volumetric_efficiency_slope"] * (ratio - 1.0)
+    )
+    extra_work = (
+        compressor["isentropic_pressure_ratio_loss"]
+        * math.log(ratio / compressor["isentropic_peak_pressure_ratio"]) ** 2
+        + compressor["isentropic_speed_loss"] * (speed / compressor["maximum_speed_rev_s"] - 0.5) ** 2
+    )
+    isentropic = compressor["isentropic_efficiency_peak"] / (1.0 + extra_work) / (1.0 + leakage)
+    return filling / (1.0 + leakage), isentropic
+
+
+def limited(target: float, room: float) -> float:
+    """Superheat or subcooling that leaves the coolant room."""
+    return room / (1.0 + (room / target) ** 4) ** 0.25
+
+
+def coolprop_cycle(parameters: dict[str, Any], point: Point) -> Point:
+    """The same operating point from CoolProp properties."""
+    fluid = CoolProp.AbstractState("HEOS", REFRIGERANT)
+    compressor = parameters["compressor"]
+
+    def conductance(rate: float, ua: float) -> float:
+        return rate * (1.0 - math.exp(-ua / rate))
+
+    hot = conductance(point["hot_capacity_rate_w_k"], parameters["condenser_ua_w_k"])
+    cold = conductance(point["cold_capacity_rate_w_k"], parameters["evaporator_ua_w_k"])
+
+    def cycle(evaporating: float, condensing: float, speed: float) -> Point:
+        fluid.update(CoolProp.QT_INPUTS, 1.0, evaporating)
+        low = fluid.p()
+        superheat = limited(parameters["superheat_k"], point["cold_return_k"] - evaporating)
+        fluid.update(CoolProp.PT_INPUTS, low, evaporating + superheat)
+        suction, density, entropy = fluid.hmass(), fluid.rhomass(), fluid.smass()
+        fluid.update(CoolProp.QT_INPUTS, 0.0, condensing)
+        high = fluid.p()
+        subcooling = limited(parameters["subcooling_k"], condensing - point["hot_return_k"])
+        fluid.update(CoolProp.PT_INPUTS, high, condensing - subcooling)
+        liquid = fluid.hmass()
+        fluid.update(CoolProp.PSmass_INPUTS, high, entropy)
+        volumetric, isentropic = efficiencies(compressor, high / low, speed)
+        work = (fluid.hmass() - suction) / isentropic
+        fluid.update(CoolProp.HmassP_INPUTS, suction + work, high)
+        mass_flow = volumetric * density * compressor["displacement_cm3"] * 1e-6 * speed
+        return {
+            "evaporating_temperature_k": evaporating,
+            "condensing_temperature_k": condensing,
+            "speed_rev_s": speed,
+            "mass_flow_kg_s": mass_flow,
+            "electric_power_w": mass_flow * work / compressor["electrical_efficiency"],
+            "condenser_heat_flow_w": mass_flow * (suction + work - liquid),
+            "evaporator_heat_flow_w": mass_flow * (suction - liquid),
+            "discharge_temperature_k": fluid.T(),
+            "isentropic_efficiency": isentropic,
+        }
+
+    def residuals(unknowns: list[float]) -> list[float]:
+        values = cycle(*unknowns)
+        return [
+            cold * (point["cold_return_k"] - unknowns[0]) - values["evaporator_heat_flow_w"],
+            hot * (unknowns[1] - point["hot_return_k"]) - values["condenser_heat_flow_w"],
+            values["electric_power_w"] - point["power_limit_w"],
+        ]
+
+    solution = root(residuals, [point["cold_return_k"] - 4.0, point["hot_return_k"] + 6.0, 40.0], tol=1e-10)
+    if not max(abs(residual) for residual in residuals(solution.x)) < 1e-3:
+        raise RuntimeError(f"SciPy found no solution: {solution.message}")
+    return cycle(*solution.x)
+
+
+def tespy_cycle(parameters: dict[str, Any], point: Point) -> Point:
+    """The same operating point as a TESPy network."""
+    from tespy.components import Compressor, CycleCloser, SimpleHeatExchanger, Valve
+    from tespy.connections import Connection
+    from tespy.networks import Network
+
+    fluid = CoolProp.AbstractState("HEOS", REFRIGERANT)
+    pressures = []
+    for quality, name in ((1.0, "evaporating_temperature_k"), (0.0, "condensing_temperature_k")):
+        fluid.update(CoolProp.QT_INPUTS, quality, point[name])
+        pressures.append(fluid.p())
+    low, high = pressures
+    _, isentropic = efficiencies(parameters["compressor"], high / low, point["speed_rev_s"])
+
+    network = Network(iterinfo=False)
+    network.units.set_defaults(
+        temperature="K", pressure="Pa", pressure_difference="Pa", enthalpy="J/kg", heat="W", power="W"
+    )
+    closer, valve = CycleCloser("closer"), Valve("valve")
+    compressor = Compressor("compressor")
+    condenser, evaporator = SimpleHeatExchanger("condenser"), SimpleHeatExchanger("evaporator")
+    suction = Connection(evaporator, "out1", closer, "in1")
+    inlet = Connection(closer, "out1", compressor, "in1")
+    discharge = Connection(compressor, "out1", condenser, "in1")
+    liquid = Connection(condenser, "out1", valve, "in1")
+    wet = Connection(valve, "out1", evaporator, "in1")
+    network.add_conns(suction, inlet, discharge, liquid, wet)
+    inlet.set_attr(fluid={REFRIGERANT: 1}, p=low, T=point["evaporating_temperature_k"] + point["superheat_k"])
+    liquid.set_attr(p=high, T=point["condensing_temperature_k"] - point["subcooling_k"])
+    condenser.set_attr(pr=1)
+    evaporator.set_attr(pr=1, Q=point["evaporator_heat_flow_w"])
+    compressor.set_attr(eta_s=isentropic)
+    network.solve("design")
+    if not network.converged:
+        raise RuntimeError("TESPy did not converge")
+    return {
+        "mass_flow_kg_s": inlet.m.val_SI,
+        "electric_power_w": compressor.P.val_SI / parameters["compressor"]["electrical_efficiency"],
+        "condenser_heat_flow_w": -condenser.Q.val_SI,
+    }
+
+
+def deviations(actual: Point, expected: Point) -> dict[str, float]:
+    """Relative deviations of what the plant uses."""
+
+    def results(point: Point) -> dict[str, float]:
+        heat = point["condenser_heat_flow_w"]
+        return {"COP": heat / point["electric_power_w"], "Q_c": heat, "mass flow": point["mass_flow_kg_s"]}
+
+    exact = results(expected)
+    return {name: value / exact[name] - 1.0 for name, value in results(actual).items()}
+
+
+def main() -> int:
+    """Prints a table; the exit status tells whether everything agrees."""
+    parameters, points = rust_points()
+    worst = 0.0
+    print("T_hot  T_cold  P[W]   COP   | CoolProp: COP      Q_c        m       | TESPy: COP      Q_c        m")
+    for point in points:
+        line = [deviations(point, cycle(parameters, point)) for cycle in (coolprop_cycle, tespy_cycle)]
+        worst = max(worst, *(abs(value) for result in line for value in result.values()))
+        cop = point["condenser_heat_flow_w"] / point["electric_power_w"]
+        print(
+            f"{point['hot_return_k'] - 273.15:5.1f}  {point['cold_return_k'] - 273.15:6.1f}"
+            f"  {point['electric_power_w']:5.0f}  {cop:5.3f} | "
+            + " | ".join("  ".join(f"{value:+9.1e}" for value in result.values()) for result in line)
+        )
+    print(f"largest deviation {worst:.1e}, allowed {TOLERANCE:.0e}")
+    return int(worst > TOLERANCE)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
