@@ -1,6 +1,6 @@
 """Compares the refrigeration loop of the Rust plant with independent calculations.
 
-CoolProp: own equations on real properties, solved with SciPy; finds saturation temperatures and speed by itself.
+CoolProp: own equations on real properties, solved with SciPy; finds temperatures and speed by itself.
 TESPy: a component network at the saturation temperatures and evaporator duty of the Rust solution.
 
     python scripts/check_refrigeration_cycle.py
@@ -16,6 +16,9 @@ from typing import Any
 
 import CoolProp
 from scipy.optimize import root
+from tespy.components import Compressor, CycleCloser, SimpleHeatExchanger, Valve
+from tespy.connections import Connection
+from tespy.networks import Network
 
 ROOT = Path(__file__).parents[1]
 REFRIGERANT = "R134a"
@@ -115,10 +118,6 @@ def coolprop_cycle(parameters: dict[str, Any], point: Point) -> Point:
 
 def tespy_cycle(parameters: dict[str, Any], point: Point) -> Point:
     """The same operating point as a TESPy network."""
-    from tespy.components import Compressor, CycleCloser, SimpleHeatExchanger, Valve
-    from tespy.connections import Connection
-    from tespy.networks import Network
-
     fluid = CoolProp.AbstractState("HEOS", REFRIGERANT)
     pressures = []
     for quality, name in ((1.0, "evaporating_temperature_k"), (0.0, "condensing_temperature_k")):
@@ -170,7 +169,9 @@ def main() -> int:
     """Prints a table; the exit status tells whether everything agrees."""
     parameters, points = rust_points()
     worst = 0.0
-    print("T_hot  T_cold  P[W]   COP   | CoolProp: COP      Q_c        m       | TESPy: COP      Q_c        m")
+    print(
+        "T_hot  T_cold  P[W]   COP   | CoolProp: COP      Q_c        m       | TESPy: COP      Q_c        m"
+    )
     for point in points:
         line = [deviations(point, cycle(parameters, point)) for cycle in (coolprop_cycle, tespy_cycle)]
         worst = max(worst, *(abs(value) for result in line for value in result.values()))

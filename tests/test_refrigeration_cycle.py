@@ -8,26 +8,30 @@ from typing import Any
 import pytest
 
 pytest.importorskip("CoolProp")
-pytest.importorskip("scipy")
+pytest.importorskip("tespy")
 sys.path.insert(0, str(Path(__file__).parents[1] / "scripts"))
 
-import check_refrigeration_cycle as check  # noqa: E402
+import check_refrigeration_cycle as check
+
+Rust = tuple[dict[str, Any], list[check.Point]]
 
 pytestmark = pytest.mark.skipif(shutil.which("cargo") is None, reason="needs cargo to run the Rust example")
 
 
 @pytest.fixture(scope="module")
-def rust() -> tuple[dict[str, Any], list[check.Point]]:
+def rust() -> Rust:
     return check.rust_points()
 
 
-def test_twenty_points_take_the_power_that_is_asked_for(rust: tuple[dict[str, Any], list[check.Point]]) -> None:
+def test_twenty_points_take_the_power_that_is_asked_for(
+    rust: Rust,
+) -> None:
     _, points = rust
     assert len(points) == 20
     assert {point["status"] for point in points} == {"Converged"}
 
 
-def test_cycle_agrees_with_coolprop(rust: tuple[dict[str, Any], list[check.Point]]) -> None:
+def test_cycle_agrees_with_coolprop(rust: Rust) -> None:
     parameters, points = rust
     for point in points:
         expected = check.coolprop_cycle(parameters, point)
@@ -38,8 +42,7 @@ def test_cycle_agrees_with_coolprop(rust: tuple[dict[str, Any], list[check.Point
         assert point["speed_rev_s"] == pytest.approx(expected["speed_rev_s"], rel=check.TOLERANCE)
 
 
-def test_cycle_agrees_with_tespy(rust: tuple[dict[str, Any], list[check.Point]]) -> None:
-    pytest.importorskip("tespy")
+def test_cycle_agrees_with_tespy(rust: Rust) -> None:
     parameters, points = rust
     for point in points:
         for name, deviation in check.deviations(point, check.tespy_cycle(parameters, point)).items():

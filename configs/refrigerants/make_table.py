@@ -43,10 +43,10 @@ EXPLANATION = """\
 # Saturation-based property table of {fluid}. Generated, do not edit.
 # Source: CoolProp {version} (HEOS), command: python configs/refrigerants/make_table.py {fluid} <output>
 # Every column is interpolated over temperature_k (saturation, uniform grid) with a not-a-knot cubic spline.
-# vapour_{{enthalpy,density,entropy}}_k: coefficient of superheat^k, superheat 0..10 K [J/kg, kg/m3, J/(kg K) per K^k]
+# vapour_{{enthalpy,density,entropy}}_k: coefficient of superheat^k, 0..10 K [J/kg, kg/m3, J/(kg K) per K^k]
 # liquid_enthalpy_k: coefficient of subcooling^k, subcooling 0..10 K, at saturation pressure [J/kg per K^k]
 # dew_enthalpy [J/kg], dew_entropy [J/(kg K)]: dry saturated vapour
-# isobar_enthalpy_k: coefficient of (s - dew_entropy)^k in h(p_sat, s); k = 0 is dew_enthalpy, k = 1 temperature_k
+# isobar_enthalpy_k: coefficient of (s - dew_entropy)^k in h(p_sat, s); 0 is dew_enthalpy, 1 temperature_k
 # isobar_temperature_k: coefficient of (h - dew_enthalpy)^k in T(p_sat, h) - temperature_k [K per (J/kg)^k]
 # isobar_range: largest h - dew_enthalpy of that polynomial, at {highest} K; linear beyond [J/kg]
 """
@@ -162,8 +162,11 @@ def reference_states(name: str, count: int, seed: int) -> np.ndarray:
         if discharge_k > 423.15:
             continue
         states.append(
-            (evaporating, superheat, low, *suction, condensing, subcooling, high, liquid)
-            + (isentropic, discharge, discharge_k)
+            (
+                *(evaporating, superheat, low, *suction),
+                *(condensing, subcooling, high, liquid),
+                *(isentropic, discharge, discharge_k),
+            )
         )
     return np.array(states)
 
@@ -178,7 +181,9 @@ def main() -> None:
     write_table(arguments.fluid, arguments.output)
     if arguments.reference:
         states = reference_states(arguments.fluid, 400, seed=134)
-        header = f"# {arguments.fluid}, CoolProp {CoolProp.__version__}, SI units, by make_table.py --reference\n"
+        header = (
+            f"# {arguments.fluid}, CoolProp {CoolProp.__version__}, SI units, by make_table.py --reference\n"
+        )
         lines = [",".join(f"{value:.11g}" for value in state) for state in states]
         arguments.reference.parent.mkdir(parents=True, exist_ok=True)
         arguments.reference.write_text(header + REFERENCE_COLUMNS + "\n" + "\n".join(lines) + "\n")

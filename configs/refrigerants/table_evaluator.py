@@ -1,4 +1,4 @@
-"""Reference evaluation of the refrigerant tables in plain NumPy/SciPy, the definition that the Rust code follows."""
+"""Reference evaluation of the refrigerant tables in NumPy/SciPy; the Rust code follows it."""
 
 from pathlib import Path
 

@@ -56,6 +56,8 @@ pub struct StepRecord {
     pub compressor_demand_w: f64,
     /// Refrigerant loop at the end of the step.
     pub refrigeration: LoopResult,
+    /// What the coolants offered it.
+    pub boundary: LoopBoundary,
     /// Mean terminal voltage [V].
     pub battery_voltage_v: f64,
     /// Mean pack current [A].
@@ -85,6 +87,18 @@ pub struct Plant {
     /// Refrigerant properties.
     pub refrigerant: RefrigerantTable,
     substeps: u32,
+}
+
+/// Where in a step the flows are on show to the hook of [`Plant::step_with`].
+#[doc(hidden)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Electrical loads, before the battery feeds them.
+    Loads,
+    /// All flows, before the thermal network receives its heat.
+    Heat,
+    /// All flows, before the ledger balances them.
+    Ledger,
 }
 
 /// What the control layer fixed for one control period.
@@ -174,18 +188,18 @@ impl Plant {
 
     /// Steps the vehicle by one control period.
     pub fn step(&self, state: &mut State, command: &Command, disturbance: &Disturbance) -> StepRecord {
-        self.step_with(state, command, disturbance, |_| {})
+        self.step_with(state, command, disturbance, |_, _| {})
     }
 
-    /// [`Plant::step`] with a hook that sees, and may falsify, the flows inside the vehicle before the thermal
-    /// network receives them; tests of the energy ledger use it.
+    /// [`Plant::step`] with a hook that sees, and may falsify, the flows inside the vehicle; tests of the energy
+    /// ledger use it.
     #[doc(hidden)]
     pub fn step_with(
         &self,
         state: &mut State,
         command: &Command,
         disturbance: &Disturbance,
-        mut tamper: impl FnMut(&mut Flows),
+        mut tamper: impl FnMut(Stage, &mut Flows),
     ) -> StepRecord {
         let demand = self.ranges.decode(command);
         let period = self.begin_period(state, demand, disturbance);
@@ -318,7 +332,7 @@ impl Plant {
         period: &Period,
         disturbance: &Disturbance,
         part: u32,
-        tamper: &mut impl FnMut(&mut Flows),
+        tamper: &mut impl FnMut(Stage, &mut Flows),
     ) -> StepRecord {
         let vehicle = &self.vehicle;
         let nodes = &self.assembly.nodes;
@@ -411,6 +425,7 @@ impl Plant {
         let loads_shed = compressor_w < period.compressor_demand_w || flows[Flow::Ptc] < ptc_w;
 
         // Regeneration against the charge limit with this step's loads, then the battery.
+        tamper(Stage::Loads, &mut flows);
         let loads_w = flows.base_load_w() + flows[Flow::Compressor] + flows[Flow::Ptc];
         let traction = driving.unwrap_or_else(|| powertrain.brake(-wheel_w, limits.charge_w + loads_w));
         flows[Flow::Traction] = traction.electrical_power_w;
@@ -420,12 +435,13 @@ impl Plant {
         let battery = self.draw(&circuit, &limits, loads_w, &mut flows);
 
         // Thermal network.
-        tamper(&mut flows);
+        tamper(Stage::Heat, &mut flows);
         let start_k = state.temperatures_k;
         let end_k = factorised.advance(&start_k, &self.heat_sources(&flows, &conditions));
         self.assembly.record_flows(&links, &conditions, &end_k, &mut flows);
 
         // Ledger.
+        tamper(Stage::Ledger, &mut flows);
         let stored = StoredEnergyChange {
             kinetic_j: vehicle.body.kinetic_energy_j(end_m_s) - vehicle.body.kinetic_energy_j(start_m_s),
             chemical_j: self.battery.chemical_energy_j(&battery.state)
@@ -445,6 +461,7 @@ impl Plant {
             granted: self.granted(state),
             compressor_demand_w: period.compressor_demand_w,
             refrigeration,
+            boundary,
             battery_voltage_v: battery.voltage_v,
             battery_current_a: battery.current_a,
             power_limits: limits,

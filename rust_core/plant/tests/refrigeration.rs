@@ -203,7 +203,7 @@ fn every_status_is_reached() {
         RefrigerationCycle::new(guarded, cycle.table().clone()).expect("the parameters fit the table");
     let result = guarded.solve(&boundary(10.0, -22.0, 900.0, 900.0), &demand(3000.0), None);
     assert_eq!(result.status, LoopStatus::SuctionLimited);
-    let hot = solve(&boundary(70.0, -30.0, 900.0, 900.0), demand(5000.0));
+    let hot = solve(&boundary(40.0, -15.0, 900.0, 900.0), demand(5000.0));
     assert_eq!(hot.status, LoopStatus::DischargeLimited);
     let mut capped = ordinary;
     capped.cold_supply = SupplyLimit { base_k: 271.0, sensitivity_k_w: 2e-3, limit_k: 263.15 };

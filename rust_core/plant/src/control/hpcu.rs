@@ -45,11 +45,19 @@ pub struct HpcuState {
     pub cools_battery: bool,
     /// Thermal battery.
     pub thermal_battery: ThermalBatteryStage,
+    /// Compressor power demanded last [W].
+    demanded_w: f64,
     cabin_pid: ResetPid,
     battery_pid: ResetPid,
     htc_pid: ResetPid,
     chiller_pid: ResetPid,
 }
+
+/// Share of the largest compressor power up to which demands integrate while the compressor rests.
+///
+/// Below its lowest speed the compressor takes nothing. Without this the PIDs, reset to the applied power,
+/// would forget their demand and never start it again; without a bound they would wind up.
+const RESTART_SHARE: f64 = 0.25;
 
 /// HPCU with its parameters and what it may use.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,6 +79,7 @@ impl Hpcu {
             heats_battery: false,
             cools_battery: false,
             thermal_battery: ThermalBatteryStage::HeatingHtc,
+            demanded_w: 0.0,
             cabin_pid: ResetPid::default(),
             battery_pid: ResetPid::default(),
             htc_pid: ResetPid::default(),
@@ -203,7 +212,11 @@ impl Hpcu {
         }
         let nodes = &plant.assembly.nodes;
         let highest_w = plant.vehicle.refrigeration.compressor.maximum_power_w;
-        let applied_w = state.compressor_power_w;
+        let applied_w = if state.refrigeration.compressor.running {
+            state.compressor_power_w
+        } else {
+            memory.demanded_w.min(RESTART_SHARE * highest_w)
+        };
         let power = |pid: &mut ResetPid, gains: &PidParameters, error_k: f64| {
             pid.applied(gains, applied_w, CONTROL_PERIOD_S);
             pid.output(gains, error_k, CONTROL_PERIOD_S, 0.0, highest_w)
@@ -223,7 +236,8 @@ impl Hpcu {
             temperature_k(state, nodes.chiller_supply) - parameters.chiller_set_point_degc.kelvin();
         let htc_w = power(&mut memory.htc_pid, &parameters.htc_pid, htc_error_k);
         let chiller_w = power(&mut memory.chiller_pid, &parameters.chiller_pid, chiller_error_k);
-        cabin_w.max(battery_w).min(htc_w).min(chiller_w)
+        memory.demanded_w = cabin_w.max(battery_w).min(htc_w).min(chiller_w);
+        memory.demanded_w
     }
 
     /// Deviation of the battery from its target while the loops act on it [K].

@@ -58,7 +58,8 @@ mod tests {
 
     #[test]
     fn roots_are_found_for_rising_falling_and_kinked_functions() {
-        let cases: [(fn(f64) -> f64, f64); 4] = [
+        type Case = (fn(f64) -> f64, f64);
+        let cases: [Case; 4] = [
             (|x| x.powi(3) - 2.0, 2.0_f64.cbrt()),
             (|x| 1.0 - x, 1.0),
             (|x| if x < 1.5 { 1e3 * (x - 1.5) } else { 1e-3 * (x - 1.5) }, 1.5),

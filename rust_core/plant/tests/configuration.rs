@@ -1,0 +1,95 @@
+//! Configuration: what is built in loads, what is wrong is named.
+
+use hp_plant::config::library::{self, Kind, Override};
+use hp_plant::drive_cycle::DriveCycle;
+use hp_plant::simulation::Experiment;
+
+fn error_with(assignment: &str) -> String {
+    let overrides = [Override::parse(assignment).expect("assignment")];
+    Experiment::load("jeffs2019/case1-1", None, &overrides).err().expect("must be refused").to_string()
+}
+
+#[test]
+fn every_built_in_scenario_loads() {
+    let names = library::names(Kind::Scenario);
+    assert!(names.len() >= 9);
+    for name in names {
+        Experiment::load(name, None, &[]).unwrap_or_else(|error| panic!("{error}"));
+    }
+}
+
+#[test]
+fn unknown_key_is_named_with_file_and_section() {
+    let message = error_with("vehicle.body.mas_kg=1500");
+    assert!(message.contains("jeffs2019") && message.contains("body") && message.contains("mas_kg"), "{message}");
+}
+
+#[test]
+fn value_out_of_range_is_named_with_what_is_allowed() {
+    let message = error_with("vehicle.body.mass_kg=-5");
+    assert!(message.contains("jeffs2019") && message.contains("body.mass_kg"), "{message}");
+    assert!(message.contains("-5") && message.contains("between 300 and 40000"), "{message}");
+    let nan = error_with("vehicle.body.mass_kg=nan");
+    assert!(nan.contains("NaN") && nan.contains("body.mass_kg"), "{nan}");
+}
+
+#[test]
+fn value_of_the_wrong_type_is_named() {
+    let message = error_with("vehicle.body.mass_kg=heavy");
+    assert!(message.contains("body.mass_kg") && message.contains("heavy"), "{message}");
+}
+
+#[test]
+fn table_that_does_not_rise_is_named_with_its_position() {
+    let message = error_with("vehicle.battery.open_circuit_voltage.voltage_v[3]=3.0");
+    assert!(message.contains("battery.open_circuit_voltage.voltage_v[3]"), "{message}");
+}
+
+#[test]
+fn override_without_a_known_prefix_or_section_is_refused() {
+    assert!(error_with("body.mass_kg=1500").contains("vehicle., controller., scenario."));
+    assert!(error_with("vehicle.bdy.mass_kg=1500").contains("bdy"));
+    assert!(Override::parse("vehicle.body.mass_kg").is_err());
+}
+
+#[test]
+fn unknown_scenario_lists_the_known_ones() {
+    let error = Experiment::load("jeffs2019/case9-9", None, &[]).err().expect("unknown").to_string();
+    assert!(error.contains("case9-9") && error.contains("jeffs2019/case1-1"), "{error}");
+}
+
+#[test]
+fn connection_that_a_member_does_not_have_is_refused() {
+    let message = error_with(
+        r#"scenario.connection_schedule=[{ from_s = 0, member = "motor", connection = "htc" }]"#,
+    );
+    assert!(message.contains("connection_schedule[0].connection"), "{message}");
+}
+
+#[test]
+fn schedule_out_of_order_is_refused() {
+    let message = error_with(
+        r#"scenario.heat_demand.schedule=[{ from_s = 9, member = "cabin", heat_flow_w = 1 }, { from_s = 3, member = "cabin", heat_flow_w = 2 }]"#,
+    );
+    assert!(message.contains("schedule[1].from_s"), "{message}");
+}
+
+#[test]
+fn wltc_class_3b_has_its_published_distance_and_length() {
+    let cycle = DriveCycle::load("wltc-class3b").expect("built-in cycle");
+    assert_eq!(cycle.duration_s(), 1800);
+    assert!((cycle.distance_m() - 23_266.28).abs() < 0.01, "{}", cycle.distance_m());
+}
+
+#[test]
+fn broken_cycle_files_are_refused_with_the_line() {
+    for (text, part) in [
+        ("time_s,speed_km_h\n0,0\n1,x\n", "line 3"),
+        ("time_s,speed_km_h\n0,0\n0,10\n", "line 3"),
+        ("time_s,speed_km_h\n0,0\n1,900\n", "900"),
+        ("time_s,speed_km_h\n0,0\n", "at least two rows"),
+    ] {
+        let error = DriveCycle::from_csv("broken.csv", text).err().expect("must be refused").to_string();
+        assert!(error.contains("broken.csv") && error.contains(part), "{error}");
+    }
+}

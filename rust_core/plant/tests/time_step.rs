@@ -1,0 +1,97 @@
+//! Step size: controllers held at 1 s, the plant integrated finer and finer.
+
+use hp_plant::flows::Flow;
+use hp_plant::simulation::Experiment;
+use rayon::prelude::*;
+
+const CASES: [&str; 9] =
+    ["case1-1", "case1-2", "case1-3", "case1-4", "case1-5", "case2-1", "case2-2", "case2-3", "case2-4"];
+
+struct Outcome {
+    energy_j: f64,
+    /// Temperatures of all nodes at every second [K].
+    temperatures_k: Vec<Vec<f64>>,
+}
+
+fn run(case: &str, substeps: u32) -> Outcome {
+    let mut experiment = Experiment::load(&format!("jeffs2019/{case}"), None, &[]).expect("built-in scenario");
+    experiment.plant = experiment.plant.with_substeps(substeps);
+    let nodes = experiment.plant.assembly.network.nodes();
+    let mut run = experiment.start();
+    let mut temperatures_k = Vec::new();
+    loop {
+        let command = experiment.rule_based_command(&mut run);
+        let end = experiment.step(&mut run, &command);
+        temperatures_k.push(run.state.temperatures_k[..nodes].to_vec());
+        if end.is_some() {
+            return Outcome { energy_j: run.summary.energy_j(Flow::Battery), temperatures_k };
+        }
+    }
+}
+
+#[test]
+fn one_second_steps_agree_with_steps_of_fifty_milliseconds() {
+    let experiment = Experiment::load("jeffs2019/case1-1", None, &[]).expect("built-in scenario");
+    let nodes = &experiment.plant.assembly.nodes;
+    let bodies = [nodes.battery, nodes.cabin, nodes.soft, nodes.hard, nodes.motor, nodes.transmission];
+    let loops = [nodes.htc_supply, nodes.htc_return, nodes.chiller_supply, nodes.chiller_return];
+    let report: Vec<String> = CASES
+        .par_iter()
+        .map(|case| {
+            let (coarse, fine) = (run(case, 1), run(case, 20));
+            let energy = (coarse.energy_j / fine.energy_j - 1.0).abs();
+            let steps = fine.temperatures_k.len();
+            let differences = |node: hp_plant::numerics::thermal_network::Node| -> Vec<f64> {
+                let pairs = coarse.temperatures_k.iter().zip(&fine.temperatures_k);
+                pairs.map(|(a, b)| (a[node.index()] - b[node.index()]).abs()).collect()
+            };
+            let at_end = bodies.map(|node| differences(node)[steps - 1]).into_iter().fold(0.0, f64::max);
+            let at_any =
+                bodies.map(|node| differences(node).into_iter().fold(0.0, f64::max)).into_iter().fold(0.0, f64::max);
+            let root_mean_square = loops
+                .map(|node| {
+                    let squares: f64 = differences(node).iter().map(|difference| difference * difference).sum();
+                    (squares / steps as f64).sqrt()
+                })
+                .into_iter()
+                .fold(0.0, f64::max);
+            assert!(energy < 1e-3, "{case}: energy differs by {energy:e}");
+            assert!(at_end < 0.15, "{case}: {at_end} K at the end");
+            assert!(at_any < 0.5, "{case}: {at_any} K at some time");
+            assert!(root_mean_square < 0.5, "{case}: loops differ by {root_mean_square} K RMS");
+            format!("{case}: energy {energy:.1e}, bodies {at_end:.3} K end, {at_any:.3} K max, loops {root_mean_square:.3} K RMS")
+        })
+        .collect();
+    println!("{}", report.join("\n"));
+}
+
+#[test]
+fn temperatures_converge_with_first_order() {
+    let errors: Vec<f64> = {
+        let reference = run("case1-4", 64);
+        [1, 2, 4]
+            .par_iter()
+            .map(|&substeps| {
+                let outcome = run("case1-4", substeps);
+                let squares: f64 = outcome
+                    .temperatures_k
+                    .iter()
+                    .flatten()
+                    .zip(reference.temperatures_k.iter().flatten())
+                    .map(|(a, b)| (a - b) * (a - b))
+                    .sum();
+                squares.sqrt()
+            })
+            .collect()
+    };
+    let orders: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
+    println!("errors {errors:?}, observed orders {orders:?}");
+    assert!(orders.iter().all(|&order| order >= 0.9), "orders {orders:?}");
+}
+
+#[test]
+fn repeated_runs_are_bit_identical() {
+    let (first, second) = (run("case1-2", 1), run("case1-2", 1));
+    assert_eq!(first.energy_j.to_bits(), second.energy_j.to_bits());
+    assert_eq!(first.temperatures_k, second.temperatures_k);
+}
