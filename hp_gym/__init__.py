@@ -1,5 +1,20 @@
 """An electric vehicle's heat pump and thermal system as a Gymnasium environment."""
 
-from hp_gym._core import __version__
+from hp_gym._core import ConfigurationError, Experiment, Run, __version__, names
+from hp_gym.command import encode
+from hp_gym.signals import observe
+from hp_gym.simulation import Controller, simulate
+from hp_gym.trajectory import Trajectory
 
-__all__ = ["__version__"]
+__all__ = [
+    "ConfigurationError",
+    "Controller",
+    "Experiment",
+    "Run",
+    "Trajectory",
+    "__version__",
+    "encode",
+    "names",
+    "observe",
+    "simulate",
+]

@@ -172,6 +172,10 @@ impl RefrigerationCycle {
             self.at_rest(boundary, LoopStatus::Off, Limit::Power)
         };
         let forced = result.limited_by != Limit::Power;
+        if startable && forced && !result.running() {
+            // A start that a limit refuses is tried again only after another minimum time off.
+            state.compressor.time_in_state_s = 0.0;
+        }
         let speed_rev_s = result.running().then_some(result.speed_rev_s);
         result.start_loss_w = state.compressor.advance(parameters, speed_rev_s, forced, step_s);
         result.electric_power_w += result.start_loss_w;

@@ -97,10 +97,13 @@ impl Battery {
         let times = |table: &[Vec<f64>], factor: f64| -> Vec<Vec<f64>> {
             table.iter().map(|row| row.iter().map(|value| value * factor).collect()).collect()
         };
-        // Scaling resistance and capacitance against each other keeps the time constant.
         let series = times(&circuit.series_resistance_ohm, scale);
         let polarisation = times(&circuit.polarisation_resistance_ohm, scale);
-        let capacitance = times(&circuit.polarisation_capacitance_f, 1.0 / scale);
+        // Between the nodes the time constant is interpolated: R1 and C1 apart would make it far too long.
+        // Scaling R1 leaves it, so C1 gives way.
+        let products = circuit.polarisation_resistance_ohm.iter().zip(&circuit.polarisation_capacitance_f);
+        let time_constants: Vec<Vec<f64>> =
+            products.map(|(r, c)| r.iter().zip(c).map(|(r, c)| r * c).collect()).collect();
         let temperatures: Vec<f64> = circuit.temperature_degc.iter().map(|t| t + ZERO_CELSIUS_K).collect();
         let usable = &parameters.usable_capacity;
         let usable_k: Vec<f64> = usable.temperature_degc.iter().map(|t| t + ZERO_CELSIUS_K).collect();
@@ -120,7 +123,7 @@ impl Battery {
             circuit: BilinearTable::new(
                 &temperatures,
                 &circuit.state_of_charge,
-                [&series, &polarisation, &capacitance],
+                [&series, &polarisation, &time_constants],
             ),
             usable_capacity: LinearTable::new(&usable_k, &usable.share),
         }
@@ -165,11 +168,10 @@ impl Battery {
     #[must_use]
     pub fn during(&self, state: &BatteryState, temperature_k: f64, step_s: f64) -> CircuitStep<'_> {
         let soc = self.state_of_charge(state);
-        let [r0, r1, c1] = self.circuit.at(temperature_k, soc);
+        let [r0, r1, time_constant_s] = self.circuit.at(temperature_k, soc);
         let series_ohm = r0 * self.cells_in_series;
         let polarisation_ohm = r1 * self.cells_in_series;
-        let root_capacitance = (c1 / self.cells_in_series).sqrt();
-        let time_constant_s = r1 * c1;
+        let root_capacitance = (time_constant_s / (r1 * self.cells_in_series)).sqrt();
         let decay = (-step_s / time_constant_s).exp();
         let (cell_v, slope) = self.open_circuit_voltage.with_slope(soc);
         CircuitStep {

@@ -23,8 +23,10 @@ parameters! {
         chiller_flow_kg_s: f64 = 0.001 .. 5.0,
         /// Constant blower level [-].
         blower_level: f64 = 0.0 .. 1.0,
-        /// Constant recirculated share [-] (paper: ambient air only, 0).
-        recirculation: f64 = 0.0 .. 0.95,
+        /// Recirculated share while heating [-] (paper: ambient air only, 0).
+        heating_recirculation: f64 = 0.0 .. 0.95,
+        /// Recirculated share while cooling [-] (ours).
+        cooling_recirculation: f64 = 0.0 .. 0.95,
         ;
         /// Thresholds of the battery's connection.
         battery: BatteryThresholds,

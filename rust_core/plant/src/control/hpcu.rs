@@ -93,7 +93,10 @@ impl Hpcu {
         let mut demand = Demand {
             connections: self.connections(plant, state, memory, mode),
             ptc_allowed: self.strategy.ptc && mode == CabinMode::Heating,
-            recirculation: self.parameters.recirculation,
+            recirculation: match mode {
+                CabinMode::Heating => self.parameters.heating_recirculation,
+                CabinMode::Cooling => self.parameters.cooling_recirculation,
+            },
             blower_level: self.parameters.blower_level,
             htc_flow_kg_s: self.parameters.htc_flow_kg_s,
             chiller_flow_kg_s: self.parameters.chiller_flow_kg_s,

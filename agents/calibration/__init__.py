@@ -1,0 +1,1 @@
+"""Fit of vehicle, controller and scenario parameters to published totals."""

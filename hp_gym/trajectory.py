@@ -1,0 +1,104 @@
+"""The record of a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from hp_gym import signals
+from hp_gym.files import atomic_write, require_suffix
+
+# pandas and matplotlib take a second to import: they are loaded by the methods that need them.
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Mapping
+
+    import numpy as np
+    import pandas as pd
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+TABLE_SUFFIXES: Final = (".csv", ".parquet")
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """Everything that could be seen of a run, one row a second, the start included.
+
+    Attributes:
+        scenario: Name or path of the scenario.
+        controller: Name of the controller.
+        end_reason: `arrived`, `unserved_energy` or `battery_empty`.
+        summary: Totals by name; a name ends with its unit.
+        limits: Limits that the run is judged by.
+        values: One row a second, one column a signal; not to be written to.
+    """
+
+    scenario: str
+    controller: str
+    end_reason: str
+    summary: Mapping[str, float]
+    limits: Mapping[str, float]
+    values: NDArray[np.float64] = field(repr=False)
+
+    def __post_init__(self) -> None:
+        """Keeps the record as it was made."""
+        self.values.flags.writeable = False
+
+    def __len__(self) -> int:
+        """Number of rows."""
+        return len(self.values)
+
+    def __getitem__(self, column: str) -> NDArray[np.float64]:
+        """Returns the values of a column.
+
+        Raises:
+            KeyError: There is no such column.
+        """
+        return self.values[:, signals.COLUMNS[column]]
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the columns."""
+        return signals.NAMES
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each column."""
+        return dict(signals.UNITS)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Returns a table, one row a second, one column a signal."""
+        import pandas as pd
+
+        return pd.DataFrame(self.values.copy(), columns=list(self.columns))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the table to a .csv or .parquet file.
+
+        Raises:
+            ValueError: The path ends otherwise.
+            OSError: The file cannot be written; one that stood there stays as it was.
+        """
+        suffix = require_suffix(path, TABLE_SUFFIXES)
+        table = self.to_pandas()
+        with atomic_write(path) as temporary:
+            if suffix == ".csv":
+                table.to_csv(temporary, index=False)
+            else:
+                table.to_parquet(temporary, index=False)
+
+    def plot(self, path: str | os.PathLike[str] | None = None) -> Figure:
+        """Draws the run.
+
+        Args:
+            path: Picture to write (.png, .svg or .pdf). Without it the figure belongs to pyplot, and
+                `matplotlib.pyplot.show()` opens it.
+
+        Raises:
+            ValueError: The path ends otherwise.
+            OSError: The file cannot be written; one that stood there stays as it was.
+        """
+        from hp_gym import plotting
+
+        return plotting.plot(self, path)
