@@ -11,3 +11,9 @@ create_exception!(_core, ConfigurationError, PyValueError, "A file, name or valu
 pub fn to_python(error: PlantError) -> PyErr {
     ConfigurationError::new_err(error.to_string())
 }
+
+/// An exception of `gymnasium.error` by name.
+pub fn gymnasium_error(py: Python<'_>, name: &str, message: &str) -> PyErr {
+    let raised = py.import("gymnasium.error").and_then(|module| module.getattr(name)?.call1((message,)));
+    raised.map_or_else(|error| error, PyErr::from_value)
+}

@@ -47,7 +47,7 @@ impl Experiment {
         if !(1..=1000).contains(&substeps) {
             return Err(PyValueError::new_err(format!("substeps is {substeps}, but must be between 1 and 1000")));
         }
-        inner.plant = inner.plant.with_substeps(substeps);
+        inner = inner.with_substeps(substeps);
         Ok(Self { inner })
     }
 

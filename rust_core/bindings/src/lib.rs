@@ -1,7 +1,10 @@
 //! Python bindings: conversions only, no logic.
 
+mod actions;
+mod episode;
 mod errors;
 mod experiment;
+mod vector;
 
 use pyo3::prelude::*;
 
@@ -9,9 +12,13 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     #[pymodule_export]
+    use super::episode::{Episode, observation_table, reward_parts};
+    #[pymodule_export]
     use super::errors::ConfigurationError;
     #[pymodule_export]
     use super::experiment::{Experiment, Run, signal_table, totals};
+    #[pymodule_export]
+    use super::vector::Vector;
     use super::errors::to_python;
     use hp_plant::command::{ACTUATORS, Scale};
     use hp_plant::config::library::{self, Kind};
@@ -24,7 +31,7 @@ mod _core {
     }
 
     fn kind(word: &str) -> PyResult<Kind> {
-        let kinds = [Kind::Vehicle, Kind::Controller, Kind::Scenario, Kind::Cycle, Kind::Refrigerant, Kind::Calibration];
+        let kinds = [Kind::Vehicle, Kind::Controller, Kind::Scenario, Kind::Cycle, Kind::Refrigerant, Kind::Calibration, Kind::Episodes, Kind::Reward];
         kinds.into_iter().find(|kind| kind.word() == word).ok_or_else(|| {
             let available = kinds.map(Kind::word).join(", ");
             to_python(PlantError::Unknown { kind: "kind of configuration", name: word.to_owned(), available })

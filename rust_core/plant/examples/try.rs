@@ -5,7 +5,7 @@ fn main() {
     let over: Vec<_> = std::env::args().skip(3).map(|o| hp_plant::config::library::Override::parse(&o).unwrap()).collect();
     for id in ["case1-1","case1-2","case1-3","case1-4","case1-5","case2-1","case2-2","case2-3","case2-4"] {
         let mut e = Experiment::load(&format!("jeffs2019/{id}"), None, &over).unwrap_or_else(|e| panic!("{e}"));
-        e.plant = e.plant.with_substeps(sub);
+        e = e.with_substeps(sub);
         let t = std::time::Instant::now();
         let (s, end) = e.totals();
         let us = t.elapsed().as_secs_f64()*1e6/1800.0;

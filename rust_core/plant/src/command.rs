@@ -134,12 +134,15 @@ pub const ACTUATORS: [Actuator; ACTUATOR_COUNT] = [
 ];
 
 const PTC: usize = 6;
-const COMPRESSOR: usize = 7;
-const RECIRCULATION: usize = 8;
+/// Row of the compressor demand.
+pub const COMPRESSOR: usize = 7;
+/// Row of the recirculated share.
+pub const RECIRCULATION: usize = 8;
 const BLOWER: usize = 9;
 const HTC_FLOW: usize = 10;
 const CHILLER_FLOW: usize = 11;
-const REQUESTS: usize = 12;
+/// First of the six rows of requested heat flows, by member.
+pub const REQUESTS: usize = 12;
 const VALVES: usize = 18;
 const CABIN_SET_POINT: usize = 24;
 
@@ -148,7 +151,7 @@ const CABIN_SET_POINT: usize = 24;
 pub struct Command(pub [f32; ACTUATOR_COUNT]);
 
 /// A command in physical units.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Demand {
     /// Connection asked for, by member.
     pub connections: [Connection; 6],

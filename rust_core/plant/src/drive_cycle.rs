@@ -62,6 +62,16 @@ impl DriveCycle {
         })
     }
 
+    /// The part between two full seconds, both within the cycle.
+    ///
+    /// # Panics
+    /// The part is empty or reaches beyond the end.
+    #[must_use]
+    pub fn window(&self, first_s: usize, last_s: usize) -> Self {
+        assert!(first_s < last_s && last_s <= self.duration_s(), "no such part of the cycle");
+        Self { name: self.name.clone(), speeds_m_s: self.speeds_m_s[first_s..=last_s].to_vec() }
+    }
+
     /// Name.
     #[must_use]
     pub fn name(&self) -> &str {

@@ -1,5 +1,7 @@
 //! Every power and heat flow of a step, in one table.
 
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::ops::{Index, IndexMut};
 
 macro_rules! flows {
@@ -142,6 +144,21 @@ pub struct Flows([f64; FLOW_COUNT]);
 impl Default for Flows {
     fn default() -> Self {
         Self([0.0; FLOW_COUNT])
+    }
+}
+
+impl Serialize for Flows {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.as_slice().serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Flows {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let values = Vec::<f64>::deserialize(deserializer)?;
+        let count = values.len();
+        let values = values.try_into();
+        values.map(Self).map_err(|_| D::Error::custom(format!("{count} flows, but there are {FLOW_COUNT}")))
     }
 }
 

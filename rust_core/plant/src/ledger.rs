@@ -4,6 +4,7 @@
 //! solve or any flow inside the vehicle, so an error in one of those shows up here.
 
 use crate::flows::{Flow, Flows};
+use serde::{Deserialize, Serialize};
 
 /// Energy stored in the vehicle, relative to fixed references [J].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -46,7 +47,7 @@ pub const OUTFLOWS: [Flow; 17] = [
 pub const SMALLEST_POWER_W: f64 = 1000.0;
 
 /// Outcome of the ledger for one step.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct LedgerEntry {
     /// Change of stored energy less what crossed the boundary [W].
     pub residual_w: f64,

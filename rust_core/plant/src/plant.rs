@@ -21,6 +21,7 @@ use crate::media::air::{self, AirProperties};
 use crate::media::refrigerant::RefrigerantTable;
 use crate::numerics::thermal_network::{MAXIMUM_NODES, NodeValues};
 use crate::state::State;
+use serde::{Deserialize, Serialize};
 
 /// Period of all controllers and of a plant step [s].
 pub const CONTROL_PERIOD_S: f64 = 1.0;
@@ -44,7 +45,7 @@ pub struct Disturbance {
 }
 
 /// What happened during a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StepRecord {
     /// Mean flows.
     pub flows: Flows,

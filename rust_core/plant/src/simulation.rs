@@ -13,6 +13,8 @@ use crate::plant::{Disturbance, Plant, StepRecord};
 use crate::signals::{self, View};
 use crate::state::State;
 use crate::summary::Summary;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A scenario, loaded and ready to run.
 #[derive(Debug, Clone)]
@@ -20,15 +22,15 @@ pub struct Experiment {
     /// Scenario.
     pub scenario: ScenarioParameters,
     /// Vehicle.
-    pub plant: Plant,
+    pub plant: Arc<Plant>,
     /// Drive cycle.
-    pub cycle: DriveCycle,
+    pub cycle: Arc<DriveCycle>,
     /// Rule-based controller.
     pub hpcu: Hpcu,
 }
 
 /// Why a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EndReason {
     /// The cycle was driven to its end.
     Arrived,
@@ -54,7 +56,7 @@ impl EndReason {
 const TOLERATED_UNSERVED_J: f64 = 3600.0;
 
 /// A run in progress; a copy of it is a snapshot.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Run {
     /// State of the vehicle.
     pub state: State,
@@ -109,11 +111,18 @@ impl Experiment {
             &part("controller"),
         )?;
         Ok(Self {
-            plant: Plant::load(&scenario.vehicle, &part("vehicle"))?,
-            cycle: DriveCycle::load(&scenario.cycle)?,
+            plant: Arc::new(Plant::load(&scenario.vehicle, &part("vehicle"))?),
+            cycle: Arc::new(DriveCycle::load(&scenario.cycle)?),
             hpcu: Hpcu { parameters, strategy: scenario.strategy.clone() },
             scenario,
         })
+    }
+
+    /// The same with each second integrated in several sub-steps; controllers stay at 1 s.
+    #[must_use]
+    pub fn with_substeps(mut self, substeps: u32) -> Self {
+        self.plant = Arc::new(Arc::unwrap_or_clone(self.plant).with_substeps(substeps));
+        self
     }
 
     /// The vehicle before the first step.

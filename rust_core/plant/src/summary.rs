@@ -4,6 +4,7 @@ use crate::config::ZERO_CELSIUS_K;
 use crate::flows::{FLOW_COUNT, Flow, Flows};
 use crate::plant::{CONTROL_PERIOD_S, Disturbance, Plant, StepRecord};
 use crate::state::State;
+use serde::{Deserialize, Serialize};
 
 /// Joule in a kilowatt-hour.
 const JOULE_PER_KWH: f64 = 3.6e6;
@@ -19,7 +20,7 @@ const PRESSURE_TOLERANCE_BAR: f64 = 0.05;
 const TEMPERATURE_TOLERANCE_K: f64 = 0.1;
 
 /// Running totals.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     energies_j: Flows,
     duration_s: f64,

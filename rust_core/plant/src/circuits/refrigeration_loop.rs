@@ -17,7 +17,7 @@ use crate::components::refrigerant_exchanger::{CondenserStreams, EvaporatorStrea
 const LEAST_CONDUCTANCE_W_K: f64 = 1.0;
 
 /// What the coolants offer during a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LoopBoundary {
     /// Coolant entering the condenser [K].
     pub hot_return_k: f64,

@@ -55,7 +55,7 @@ const CAPS: [Limit; 6] =
     [Limit::Power, Limit::Speed, Limit::Pressure, Limit::Suction, Limit::HotCoolant, Limit::ColdCoolant];
 
 /// Coolant supply temperature at the end of the step as a function of the exchanger's heat flow.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SupplyLimit {
     /// Supply temperature at the end of the step without any heat flow [K].
     pub base_k: f64,

@@ -25,7 +25,7 @@ pub struct BatteryState {
 }
 
 /// Limits on the terminal power during a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PowerLimits {
     /// Largest charging power, as a positive number [W].
     pub charge_w: f64,

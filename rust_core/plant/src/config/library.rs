@@ -31,6 +31,10 @@ pub enum Kind {
     Refrigerant,
     /// `calibration/*.toml`
     Calibration,
+    /// `episodes/*.toml`
+    Episodes,
+    /// `rewards/*.toml`
+    Reward,
 }
 
 impl Kind {
@@ -43,6 +47,8 @@ impl Kind {
             Self::Cycle => ("cycles", "csv"),
             Self::Refrigerant => ("refrigerants", "csv"),
             Self::Calibration => ("calibration", "toml"),
+            Self::Episodes => ("episodes", "toml"),
+            Self::Reward => ("rewards", "toml"),
         }
     }
 
@@ -56,6 +62,8 @@ impl Kind {
             Self::Cycle => "drive cycle",
             Self::Refrigerant => "refrigerant",
             Self::Calibration => "calibration",
+            Self::Episodes => "distribution of episodes",
+            Self::Reward => "reward",
         }
     }
 }

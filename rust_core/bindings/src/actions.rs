@@ -1,0 +1,104 @@
+//! Actions from NumPy arrays, checked: type, shape, range.
+
+use hp_episode::action;
+use hp_episode::setup::Setup;
+use hp_plant::command::{ACTUATORS, Scale};
+use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::intern;
+use pyo3::prelude::*;
+
+/// Actions of one or many environments.
+pub enum Checked<'py> {
+    /// Options.
+    Levels(PyReadonlyArrayDyn<'py, i64>),
+    /// Normalised values.
+    Values(PyReadonlyArrayDyn<'py, f32>),
+}
+
+/// Reads an action; `count` is the number of environments of a batch.
+pub fn read<'py>(action: &Bound<'py, PyAny>, setup: &Setup, count: Option<usize>) -> PyResult<Checked<'py>> {
+    if setup.continuous {
+        let array = typed::<f32>(action, "f", "float32", "floating point")?;
+        let values = checked(&array, setup, count, |row, value| {
+            if (-1.0..=1.0).contains(&value) {
+                return None;
+            }
+            Some((f64::from(value), format!("between -1 and 1 ({})", ACTUATORS[row].description)))
+        });
+        values.map(|()| Checked::Values(array))
+    } else {
+        let array = typed::<i64>(action, "iu", "int64", "integer")?;
+        let levels = checked(&array, setup, count, |row, level| {
+            let options = action::options(row);
+            if usize::try_from(level).is_ok_and(|level| level < options) {
+                return None;
+            }
+            let names = match ACTUATORS[row].scale {
+                Scale::Choice(names) => format!(" ({})", names.join(", ")),
+                Scale::Linear | Scale::OffThenLogarithmic => String::new(),
+            };
+            Some((level as f64, format!("between 0 and {}{names}", options - 1)))
+        });
+        levels.map(|()| Checked::Levels(array))
+    }
+}
+
+/// The action as a contiguous array of one type; other types of the same kind are converted.
+fn typed<'py, T: numpy::Element>(
+    action: &Bound<'py, PyAny>,
+    kinds: &str,
+    name: &str,
+    kind_words: &str,
+) -> PyResult<PyReadonlyArrayDyn<'py, T>> {
+    if let Ok(array) = action.cast::<PyArrayDyn<T>>()
+        && array.is_c_contiguous()
+    {
+        return Ok(array.readonly());
+    }
+    let py = action.py();
+    let numpy = py.import(intern!(py, "numpy"))?;
+    let given = numpy.call_method1(intern!(py, "asarray"), (action,))?;
+    let dtype = given.getattr(intern!(py, "dtype"))?;
+    let kind: String = dtype.getattr(intern!(py, "kind"))?.extract()?;
+    if !kinds.contains(&kind) {
+        return Err(PyTypeError::new_err(format!("action is of type {dtype}, but must be {kind_words}")));
+    }
+    let array = numpy.call_method1(intern!(py, "ascontiguousarray"), (given, name))?;
+    Ok(array.cast_into::<PyArrayDyn<T>>()?.readonly())
+}
+
+/// Shape, then every value.
+fn checked<T: numpy::Element + Copy>(
+    array: &PyReadonlyArrayDyn<'_, T>,
+    setup: &Setup,
+    count: Option<usize>,
+    refuse: impl Fn(usize, T) -> Option<(f64, String)>,
+) -> PyResult<()> {
+    let rows = setup.actions.rows();
+    let shape = array.shape();
+    let fits = match count {
+        None => shape == [rows.len()],
+        Some(count) => shape == [count, rows.len()],
+    };
+    if !fits {
+        let allowed = match count {
+            None => format!("({},)", rows.len()),
+            Some(count) => format!("({count}, {})", rows.len()),
+        };
+        let names: Vec<&str> = rows.iter().map(|&row| ACTUATORS[row].name).collect();
+        let message = format!("action has the shape {shape:?}, but must have {allowed}: {}", names.join(", "));
+        return Err(PyValueError::new_err(message));
+    }
+    for (place, &value) in array.as_slice()?.iter().enumerate() {
+        let (index, column) = (place / rows.len(), place % rows.len());
+        let row = rows[column];
+        if let Some((value, allowed)) = refuse(row, value) {
+            let position = if count.is_some() { format!("{index}, {column}") } else { column.to_string() };
+            let name = ACTUATORS[row].name;
+            let message = format!("action[{position}] ({name}) is {value}, but must be {allowed}");
+            return Err(PyValueError::new_err(message));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,317 @@
+//! Many environments that step together, the interpreter's lock released.
+
+use crate::actions::{self, Checked};
+use crate::episode::{as_action, kpis, parts_info, setup, source, trip_info};
+use crate::errors::{gymnasium_error, to_python};
+use hp_episode::episode::Episode;
+use hp_episode::setup::{Setup, Source};
+use hp_episode::vector::{self, Actions, Autoreset, Events, PARTS, Results};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A name for each environment; none stands for its own.
+type Names = Vec<Option<String>>;
+
+/// A trip that is over: environment, whether it was cut off, info, last observation.
+type Finished<'py> = (usize, Bound<'py, PyDict>, Option<Bound<'py, PyArray1<f32>>>);
+
+/// An environment that was reset, with what is told of its trip.
+type Reset<'py> = (usize, Bound<'py, PyDict>);
+
+/// What a step gives: observations, rewards, terminated, truncated, parts of the rewards, trips that are over,
+/// environments that were reset.
+type Step<'py> = (
+    Bound<'py, PyArray2<f32>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<bool>>,
+    Bound<'py, PyArray1<bool>>,
+    Bound<'py, PyArray2<f64>>,
+    Vec<Finished<'py>>,
+    Vec<Reset<'py>>,
+);
+
+/// Many environments.
+#[pyclass(module = "hp_gym._core")]
+pub struct Vector {
+    arguments: (String, Names, Names, String, Option<u64>, usize),
+    setup: Arc<Setup>,
+    autoreset: Autoreset,
+    inner: vector::Vector,
+    closed: bool,
+}
+
+/// Sources by name, each loaded once.
+struct Sources<'a> {
+    setup: &'a Setup,
+    loaded: HashMap<(Option<String>, Option<String>), Option<Source>>,
+}
+
+impl Sources<'_> {
+    fn get(&mut self, scenario: Option<&String>, distribution: Option<&String>) -> PyResult<Option<Source>> {
+        let key = (scenario.cloned(), distribution.cloned());
+        if let Some(source) = self.loaded.get(&key) {
+            return Ok(source.clone());
+        }
+        let source = source(self.setup, key.0.as_deref(), key.1.as_deref())?;
+        self.loaded.insert(key, source.clone());
+        Ok(source)
+    }
+}
+
+impl Vector {
+    fn require_open(&self, py: Python<'_>) -> PyResult<()> {
+        if self.closed {
+            return Err(gymnasium_error(py, "ClosedEnvironmentError", "this environment was closed; make another one"));
+        }
+        Ok(())
+    }
+
+    fn require_ready(&self, py: Python<'_>) -> PyResult<()> {
+        self.require_open(py)?;
+        if !self.inner.episodes().iter().all(Episode::begun) {
+            return Err(gymnasium_error(py, "ResetNeeded", "call reset() first"));
+        }
+        Ok(())
+    }
+
+    fn check_index(&self, index: usize) -> PyResult<()> {
+        let count = self.inner.episodes().len();
+        if index >= count {
+            return Err(PyValueError::new_err(format!("index is {index}, but must be below {count}")));
+        }
+        Ok(())
+    }
+
+    fn width(&self) -> usize {
+        self.setup.observations.rows().len()
+    }
+}
+
+#[pymethods]
+impl Vector {
+    #[new]
+    fn new(
+        settings: String,
+        scenarios: Names,
+        distributions: Names,
+        autoreset: String,
+        step_limit: Option<u64>,
+        threads: usize,
+    ) -> PyResult<Self> {
+        let setup = setup(&settings)?;
+        let mode = match autoreset.as_str() {
+            "NextStep" => Autoreset::NextStep,
+            "SameStep" => Autoreset::SameStep,
+            "Disabled" => Autoreset::Disabled,
+            other => {
+                let message = format!("autoreset mode is {other}, but must be NextStep, SameStep or Disabled");
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        let mut sources = Sources { setup: &setup, loaded: HashMap::new() };
+        let mut episodes = Vec::with_capacity(scenarios.len());
+        for (scenario, distribution) in scenarios.iter().zip(&distributions) {
+            let source = sources
+                .get(scenario.as_ref(), distribution.as_ref())?
+                .ok_or_else(|| PyValueError::new_err("scenario and distribution are None, but one must be given"))?;
+            episodes.push(Episode::new(Arc::clone(&setup), source));
+        }
+        let inner = vector::Vector::new(episodes, mode, step_limit, threads);
+        let arguments = (settings, scenarios, distributions, autoreset, step_limit, threads);
+        Ok(Self { arguments, setup, autoreset: mode, inner, closed: false })
+    }
+
+    /// Resets environments, each with its seed and, just this once, its scenario or distribution.
+    fn reset<'py>(
+        &mut self,
+        py: Python<'py>,
+        indices: Vec<usize>,
+        seeds: Vec<Option<u64>>,
+        scenarios: Names,
+        distributions: Names,
+    ) -> PyResult<Vec<Reset<'py>>> {
+        self.require_open(py)?;
+        let mut sources = Sources { setup: &self.setup, loaded: HashMap::new() };
+        let mut once = Vec::with_capacity(indices.len());
+        for (scenario, distribution) in scenarios.iter().zip(&distributions) {
+            once.push(sources.get(scenario.as_ref(), distribution.as_ref())?);
+        }
+        let mut infos = Vec::with_capacity(indices.len());
+        for ((&index, seed), once) in indices.iter().zip(seeds).zip(&once) {
+            self.check_index(index)?;
+            self.inner.reset(index, seed, once.as_ref()).map_err(to_python)?;
+            infos.push((index, trip_info(py, &self.inner.episodes()[index])?));
+        }
+        Ok(infos)
+    }
+
+    /// Observations of environments, one row each.
+    fn observe<'py>(&mut self, py: Python<'py>, indices: Vec<usize>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let width = self.width();
+        let array = PyArray2::zeros(py, [indices.len(), width], false);
+        {
+            let mut values = array.readwrite();
+            for (row, &index) in values.as_slice_mut()?.chunks_mut(width).zip(&indices) {
+                self.check_index(index)?;
+                self.inner.episodes_mut()[index].observe(row);
+            }
+        }
+        Ok(array)
+    }
+
+    fn step<'py>(&mut self, py: Python<'py>, action: &Bound<'py, PyAny>) -> PyResult<Step<'py>> {
+        self.require_ready(py)?;
+        if self.autoreset == Autoreset::Disabled && self.inner.over().contains(&true) {
+            let over = self.inner.over().iter().enumerate().filter(|(_, over)| **over);
+            let over: Vec<String> = over.map(|(index, _)| index.to_string()).collect();
+            let message = format!(
+                "the trips of environments {} have ended; call reset(options={{\"reset_mask\": ...}})",
+                over.join(", ")
+            );
+            return Err(gymnasium_error(py, "ResetNeeded", &message));
+        }
+        let count = self.inner.episodes().len();
+        let checked = actions::read(action, &self.setup, Some(count))?;
+        let observations = PyArray2::zeros(py, [count, self.width()], false);
+        let rewards = PyArray1::zeros(py, count, false);
+        let terminated = PyArray1::zeros(py, count, false);
+        let truncated = PyArray1::zeros(py, count, false);
+        let parts = PyArray2::zeros(py, [PARTS, count], false);
+        let events = {
+            let (mut observations, mut rewards) = (observations.readwrite(), rewards.readwrite());
+            let (mut terminated, mut truncated) = (terminated.readwrite(), truncated.readwrite());
+            let mut parts = parts.readwrite();
+            let mut results = Results {
+                observations: observations.as_slice_mut()?,
+                rewards: rewards.as_slice_mut()?,
+                terminated: terminated.as_slice_mut()?,
+                truncated: truncated.as_slice_mut()?,
+                parts: parts.as_slice_mut()?,
+            };
+            let actions = match &checked {
+                Checked::Levels(array) => Actions::Levels(array.as_slice()?),
+                Checked::Values(array) => Actions::Values(array.as_slice()?),
+            };
+            let inner = &mut self.inner;
+            py.detach(|| inner.step(actions, &mut results)).map_err(to_python)?
+        };
+        let (finished, reset) = self.told(py, events)?;
+        Ok((observations, rewards, terminated, truncated, parts, finished, reset))
+    }
+
+    fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
+        self.require_ready(py)?;
+        let length = self.setup.actions.mask_length();
+        let array = PyArray2::zeros(py, [self.inner.episodes().len(), length], false);
+        {
+            let mut values = array.readwrite();
+            for (mask, episode) in values.as_slice_mut()?.chunks_mut(length).zip(self.inner.episodes()) {
+                episode.write_mask(mask);
+            }
+        }
+        Ok(array)
+    }
+
+    /// Action of the rule-based controller of one environment.
+    fn rule_based_action<'py>(&mut self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
+        self.require_ready(py)?;
+        self.check_index(index)?;
+        let command = self.inner.episodes_mut()[index].rule_based_command();
+        let command = command.ok_or_else(|| gymnasium_error(py, "ResetNeeded", "call reset() first"))?;
+        Ok(as_action(py, &self.setup, &command))
+    }
+
+    /// KPIs of the present trip of one environment.
+    fn kpis<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {
+        self.require_ready(py)?;
+        self.check_index(index)?;
+        kpis(py, &self.inner.episodes()[index].terms().copied().unwrap_or_default(), &self.setup.reward)
+    }
+
+    /// Lets every environment go on from where another one is now.
+    fn fork(&mut self, py: Python<'_>, indices: Vec<usize>) -> PyResult<()> {
+        self.require_open(py)?;
+        let count = self.inner.episodes().len();
+        if indices.len() != count {
+            let message = format!("indices has {} entries, but must have {count}", indices.len());
+            return Err(PyValueError::new_err(message));
+        }
+        for &index in &indices {
+            self.check_index(index)?;
+        }
+        self.inner.fork(&indices);
+        Ok(())
+    }
+
+    fn get_state<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyBytes>> {
+        self.check_index(index)?;
+        Ok(PyBytes::new(py, &self.inner.to_bytes(index).map_err(to_python)?))
+    }
+
+    /// Restores environments, all or none.
+    fn set_states(&mut self, py: Python<'_>, indices: Vec<usize>, states: Vec<Vec<u8>>) -> PyResult<()> {
+        self.require_open(py)?;
+        let mut kept = Vec::with_capacity(indices.len());
+        for (&index, state) in indices.iter().zip(&states) {
+            self.check_index(index)?;
+            kept.push((index, self.inner.to_bytes(index).map_err(to_python)?));
+            if let Err(error) = self.inner.restore(index, state) {
+                for (index, state) in kept {
+                    self.inner.restore(index, &state).map_err(to_python)?;
+                }
+                return Err(to_python(error));
+            }
+        }
+        Ok(())
+    }
+
+    fn close(&mut self) {
+        self.closed = true;
+    }
+
+    #[allow(clippy::type_complexity)]
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(
+        Bound<'py, PyAny>,
+        (String, Names, Names, String, Option<u64>, usize),
+        (Vec<Bound<'py, PyBytes>>, bool),
+    )> {
+        let this = slf.borrow();
+        let count = this.inner.episodes().len();
+        let states = (0..count).map(|index| this.get_state(slf.py(), index)).collect::<PyResult<Vec<_>>>()?;
+        Ok((slf.get_type().into_any(), this.arguments.clone(), (states, this.closed)))
+    }
+
+    fn __setstate__(&mut self, state: (Vec<Vec<u8>>, bool)) -> PyResult<()> {
+        for (index, bytes) in state.0.iter().enumerate() {
+            self.inner.restore(index, bytes).map_err(to_python)?;
+        }
+        self.closed = state.1;
+        Ok(())
+    }
+}
+
+impl Vector {
+    fn told<'py>(&self, py: Python<'py>, events: Events) -> PyResult<(Vec<Finished<'py>>, Vec<Reset<'py>>)> {
+        let mut finished = Vec::with_capacity(events.finished.len());
+        for trip in events.finished {
+            let info = parts_info(py, &trip.parts)?;
+            if let Some(end) = trip.end {
+                info.set_item("end_reason", end.name())?;
+                info.set_item("kpis", kpis(py, &trip.terms, &self.setup.reward)?)?;
+            }
+            let last = trip.last_observation.map(|values| values.into_pyarray(py));
+            finished.push((trip.index, info, last));
+        }
+        let mut reset = Vec::with_capacity(events.reset.len());
+        for index in events.reset {
+            reset.push((index, trip_info(py, &self.inner.episodes()[index])?));
+        }
+        Ok((finished, reset))
+    }
+}

@@ -1,0 +1,254 @@
+//! One environment: trips driven second by second from start to arrival.
+
+use crate::action::{self, Defaults};
+use crate::garage::Trip;
+use crate::observation::Look;
+use crate::random::Random;
+use crate::reference::ReferenceConditions;
+use crate::reward::{Meter, Parts, Terms};
+use crate::setup::{Setup, Source};
+use crate::snapshot;
+use hp_plant::command::{ACTUATOR_COUNT, Command};
+use hp_plant::error::PlantResult;
+use hp_plant::signals::View;
+use hp_plant::simulation::{EndReason, Experiment, Run};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Keeps the noise apart from what draws the trips.
+const NOISE_STREAM: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// What a step gave.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outcome {
+    /// Reward.
+    pub reward: f64,
+    /// Its parts.
+    pub parts: Parts,
+    /// Why the trip is over, if it is.
+    pub end: Option<EndReason>,
+}
+
+/// What changes while a trip is driven: plain data.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Progress {
+    run: Run,
+    meter: Meter,
+    asked: Command,
+    /// What the rule-based controller wants this second, once it was asked.
+    ruled: Option<Command>,
+    end: Option<EndReason>,
+}
+
+/// A trip in progress.
+#[derive(Debug, Clone)]
+struct Current {
+    trip: Trip,
+    experiment: Experiment,
+    conditions: ReferenceConditions,
+    defaults: Defaults,
+    progress: Progress,
+}
+
+/// Everything that an episode's future depends on.
+#[derive(Serialize, Deserialize)]
+struct Snapshot {
+    random: Random,
+    noise: Random,
+    current: Option<(Trip, Progress)>,
+}
+
+/// One environment.
+#[derive(Debug, Clone)]
+pub struct Episode {
+    setup: Arc<Setup>,
+    source: Source,
+    random: Random,
+    noise: Random,
+    current: Option<Current>,
+}
+
+impl Current {
+    fn of(setup: &Setup, trip: Trip) -> PlantResult<Self> {
+        let experiment = setup.garage.build(&trip)?;
+        let run = experiment.start();
+        let defaults = Defaults::of(&experiment);
+        let off: Vec<f32> = setup.actions.rows().iter().map(|&row| action::option_value(row, 0)).collect();
+        let progress = Progress {
+            meter: Meter::start(&run.state),
+            asked: defaults.complete(&setup.actions, &off, &experiment, 0.0),
+            run,
+            ruled: None,
+            end: None,
+        };
+        Ok(Self { conditions: ReferenceConditions::of(&experiment), defaults, trip, experiment, progress })
+    }
+}
+
+impl Episode {
+    /// An environment before its first reset.
+    #[must_use]
+    pub fn new(setup: Arc<Setup>, source: Source) -> Self {
+        Self { setup, source, random: Random::seeded(0), noise: Random::seeded(NOISE_STREAM), current: None }
+    }
+
+    /// Settings.
+    #[must_use]
+    pub fn setup(&self) -> &Arc<Setup> {
+        &self.setup
+    }
+
+    /// Starts the random numbers anew.
+    pub fn seed(&mut self, seed: u64) {
+        self.random = Random::seeded(seed);
+        self.noise = Random::seeded(seed ^ NOISE_STREAM);
+    }
+
+    /// Begins a trip of the environment's own source, or of another one just this once.
+    ///
+    /// # Errors
+    /// A file of the trip cannot be loaded; the trip in progress stays as it is.
+    pub fn reset(&mut self, once: Option<&Source>) -> PlantResult<()> {
+        let trip = match once.unwrap_or(&self.source) {
+            Source::Scenario(trip) => trip.clone(),
+            Source::Distribution(distribution) => distribution.draw(&mut self.random),
+        };
+        self.current = Some(Current::of(&self.setup, trip)?);
+        Ok(())
+    }
+
+    /// Whether a trip was begun.
+    #[must_use]
+    pub fn begun(&self) -> bool {
+        self.current.is_some()
+    }
+
+    /// Why the last trip is over, if it is.
+    #[must_use]
+    pub fn end(&self) -> Option<EndReason> {
+        self.current.as_ref().and_then(|current| current.progress.end)
+    }
+
+    /// Drives one control interval with values of the selected rows.
+    ///
+    /// Nothing happens, and there is no outcome, before the first reset and after the end of a trip.
+    pub fn step(&mut self, values: &[f32]) -> Option<Outcome> {
+        let current = self.current.as_mut().filter(|current| current.progress.end.is_none())?;
+        let Current { experiment, conditions, defaults, progress, .. } = current;
+        let mut added = Terms::default();
+        progress.ruled = None;
+        for _ in 0..self.setup.control_interval_s {
+            let time_s = progress.run.state.time_s;
+            progress.asked = defaults.complete(&self.setup.actions, values, experiment, time_s);
+            let disturbance = experiment.disturbance(progress.run.steps);
+            progress.end = experiment.step(&mut progress.run, &progress.asked);
+            added += progress.meter.add(
+                experiment,
+                conditions,
+                &self.setup.reward,
+                &progress.run,
+                &disturbance,
+                progress.end,
+            );
+            if progress.end.is_some() {
+                break;
+            }
+        }
+        let parts = added.reward(&self.setup.reward);
+        Some(Outcome { reward: parts.iter().sum(), parts, end: progress.end })
+    }
+
+    /// Writes the observation of now; all zero before the first reset.
+    pub fn observe(&mut self, values: &mut [f32]) {
+        let Some(current) = &self.current else {
+            values.fill(0.0);
+            return;
+        };
+        let Current { experiment, progress, .. } = current;
+        let disturbance = experiment.disturbance(progress.run.steps.saturating_sub(1));
+        let look = Look {
+            view: View {
+                plant: &experiment.plant,
+                state: &progress.run.state,
+                record: progress.run.record.as_ref(),
+                disturbance: &disturbance,
+            },
+            experiment,
+            asked: &progress.asked,
+            steps: progress.run.steps,
+        };
+        let strength = self.setup.sensor_noise;
+        let noise = &mut self.noise;
+        let blur = || if strength > 0.0 { strength * noise.normal() } else { 0.0 };
+        self.setup.observations.write(&look, blur, values);
+    }
+
+    /// Writes which options of the actions would be granted now; all before the first reset.
+    pub fn write_mask(&self, mask: &mut [bool]) {
+        let Some(current) = &self.current else {
+            mask.fill(true);
+            return;
+        };
+        let Current { experiment, progress, defaults, .. } = current;
+        let ambient_k = experiment.disturbance(progress.run.steps).ambient_k;
+        self.setup.actions.write_mask(&experiment.plant, &progress.run.state, ambient_k, defaults, mask);
+    }
+
+    /// Command of the rule-based controller for the next control interval; the same until the next step.
+    pub fn rule_based_command(&mut self) -> Option<Command> {
+        let Current { experiment, progress, .. } = self.current.as_mut()?;
+        if progress.ruled.is_none() {
+            progress.ruled = Some(experiment.rule_based_command(&mut progress.run));
+        }
+        progress.ruled
+    }
+
+    /// The trip in progress.
+    #[must_use]
+    pub fn trip(&self) -> Option<(&Trip, &Experiment)> {
+        self.current.as_ref().map(|current| (&current.trip, &current.experiment))
+    }
+
+    /// The run in progress.
+    #[must_use]
+    pub fn run(&self) -> Option<&Run> {
+        self.current.as_ref().map(|current| &current.progress.run)
+    }
+
+    /// The command that was driven last.
+    #[must_use]
+    pub fn asked(&self) -> Option<[f32; ACTUATOR_COUNT]> {
+        self.current.as_ref().map(|current| current.progress.asked.0)
+    }
+
+    /// Terms of the trip so far.
+    #[must_use]
+    pub fn terms(&self) -> Option<&Terms> {
+        self.current.as_ref().map(|current| &current.progress.meter.total)
+    }
+
+    /// Everything that the future depends on, as bytes.
+    ///
+    /// # Errors
+    /// See [`snapshot::pack`].
+    pub fn to_bytes(&self) -> PlantResult<Vec<u8>> {
+        let current = self.current.as_ref().map(|current| (current.trip.clone(), current.progress));
+        let snapshot = Snapshot { random: self.random.clone(), noise: self.noise.clone(), current };
+        snapshot::pack(self.setup.fingerprint, &snapshot)
+    }
+
+    /// Goes on from where [`Self::to_bytes`] was called.
+    ///
+    /// # Errors
+    /// The bytes are not a state of an environment with these settings; nothing has changed then.
+    pub fn restore(&mut self, bytes: &[u8]) -> PlantResult<()> {
+        let snapshot: Snapshot = snapshot::unpack(self.setup.fingerprint, bytes)?;
+        self.current = match snapshot.current {
+            None => None,
+            Some((trip, progress)) => Some(Current { progress, ..Current::of(&self.setup, trip)? }),
+        };
+        self.random = snapshot.random;
+        self.noise = snapshot.noise;
+        Ok(())
+    }
+}

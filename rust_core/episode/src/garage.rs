@@ -1,0 +1,109 @@
+//! Vehicles, cycles and scenarios, each loaded once and shared by all episodes.
+
+use hp_plant::config::library::Override;
+use hp_plant::config::scenario::ScenarioParameters;
+use hp_plant::drive_cycle::DriveCycle;
+use hp_plant::error::PlantResult;
+use hp_plant::plant::Plant;
+use hp_plant::simulation::Experiment;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// What defines a trip: plain data.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Trip {
+    /// Scenario that gave vehicle and controller.
+    pub origin: String,
+    /// The scenario itself.
+    pub scenario: ScenarioParameters,
+    /// Part of the cycle that is driven [s]; the whole where absent.
+    pub window: Option<(usize, usize)>,
+}
+
+/// Loaded parts by name, with the overrides that apply to all of them.
+#[derive(Debug, Default)]
+pub struct Garage {
+    overrides: Vec<Override>,
+    shelves: Mutex<Shelves>,
+}
+
+#[derive(Debug, Default)]
+struct Shelves {
+    experiments: HashMap<String, Arc<Experiment>>,
+    plants: HashMap<String, Arc<Plant>>,
+    cycles: HashMap<String, Arc<DriveCycle>>,
+}
+
+impl Garage {
+    /// An empty garage whose scenarios are loaded with overrides.
+    #[must_use]
+    pub fn new(overrides: Vec<Override>) -> Self {
+        Self { overrides, shelves: Mutex::default() }
+    }
+
+    fn shelves(&self) -> MutexGuard<'_, Shelves> {
+        // Whatever a panicking thread left on the shelves is complete.
+        self.shelves.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A scenario by name or path.
+    ///
+    /// # Errors
+    /// Anything wrong in one of its files or in an override.
+    pub fn experiment(&self, name: &str) -> PlantResult<Arc<Experiment>> {
+        let mut shelves = self.shelves();
+        if let Some(experiment) = shelves.experiments.get(name) {
+            return Ok(Arc::clone(experiment));
+        }
+        let mut experiment = Experiment::load(name, None, &self.overrides)?;
+        let vehicle = experiment.scenario.vehicle.clone();
+        experiment.plant = Arc::clone(shelves.plants.entry(vehicle).or_insert(experiment.plant));
+        let cycle = experiment.scenario.cycle.clone();
+        experiment.cycle = Arc::clone(shelves.cycles.entry(cycle).or_insert(experiment.cycle));
+        let experiment = Arc::new(experiment);
+        shelves.experiments.insert(name.to_owned(), Arc::clone(&experiment));
+        Ok(experiment)
+    }
+
+    /// A drive cycle by name or path.
+    ///
+    /// # Errors
+    /// There is none of that name, or its file is no cycle.
+    pub fn cycle(&self, name: &str) -> PlantResult<Arc<DriveCycle>> {
+        let mut shelves = self.shelves();
+        if let Some(cycle) = shelves.cycles.get(name) {
+            return Ok(Arc::clone(cycle));
+        }
+        let cycle = Arc::new(DriveCycle::load(name)?);
+        shelves.cycles.insert(name.to_owned(), Arc::clone(&cycle));
+        Ok(cycle)
+    }
+
+    /// The trip of a scenario file.
+    ///
+    /// # Errors
+    /// See [`Self::experiment`].
+    pub fn trip(&self, name: &str) -> PlantResult<Trip> {
+        let scenario = self.experiment(name)?.scenario.clone();
+        Ok(Trip { origin: name.to_owned(), scenario, window: None })
+    }
+
+    /// Makes a trip ready to drive.
+    ///
+    /// # Errors
+    /// Its origin or cycle cannot be loaded.
+    pub fn build(&self, trip: &Trip) -> PlantResult<Experiment> {
+        let origin = self.experiment(&trip.origin)?;
+        let mut cycle = self.cycle(&trip.scenario.cycle)?;
+        if let Some((first_s, last_s)) = trip.window {
+            cycle = Arc::new(cycle.window(first_s, last_s));
+        }
+        Ok(Experiment {
+            scenario: trip.scenario.clone(),
+            plant: Arc::clone(&origin.plant),
+            cycle,
+            hpcu: origin.hpcu.clone(),
+        })
+    }
+}

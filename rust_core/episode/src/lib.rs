@@ -1,0 +1,16 @@
+//! A plant as a decision process: what an agent does, sees and is paid for, from start to arrival.
+//!
+//! One [`episode::Episode`] is one environment, a [`vector::Vector`] many that step together. Everything that
+//! changes is plain data and can be written as bytes ([`snapshot`]).
+
+pub mod action;
+pub mod episode;
+pub mod garage;
+pub mod observation;
+pub mod random;
+pub mod reference;
+pub mod reward;
+pub mod scenario_sampler;
+pub mod setup;
+pub mod snapshot;
+pub mod vector;

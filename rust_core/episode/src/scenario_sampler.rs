@@ -1,0 +1,199 @@
+//! Distributions of episodes: which trips an agent trains on and is tested on.
+
+use crate::garage::{Garage, Trip};
+use crate::random::Random;
+use hp_plant::config::library::{self, Kind};
+use hp_plant::config::{Celsius, Validate, Violation, check_range};
+use hp_plant::error::PlantResult;
+use hp_plant::parameters;
+use hp_plant::simulation::Experiment;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A distribution of episodes as its file gives it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DistributionParameters {
+    /// What it is for, in a sentence.
+    pub description: String,
+    /// Scenario that gives vehicle, controller, strategy and heat requests.
+    pub scenario: String,
+    /// Drive cycles, all equally likely.
+    pub cycles: Vec<String>,
+    /// Ranges of what is drawn.
+    pub ranges: SampledRanges,
+}
+
+parameters! {
+    /// Ranges; what has a low and a high end is drawn evenly between them.
+    pub struct SampledRanges {
+        /// Share of trips that are a whole cycle [-].
+        whole_cycle_share: f64 = 0.0 .. 1.0,
+        /// The others run from one standstill of the cycle to another, at least this long [s].
+        shortest_trip_s: u32 = 10 .. 100000,
+        /// Coldest ambient [degC].
+        ambient_low_degc: Celsius = -40.0 .. 50.0,
+        /// Hottest ambient [degC].
+        ambient_high_degc: Celsius = -40.0 .. 50.0,
+        /// Share of trips that start in a garage and not at ambient temperature [-].
+        garage_share: f64 = 0.0 .. 1.0,
+        /// Coldest garage [degC].
+        garage_low_degc: Celsius = -40.0 .. 50.0,
+        /// Hottest garage [degC].
+        garage_high_degc: Celsius = -40.0 .. 50.0,
+        /// Share of trips without sun [-].
+        dark_share: f64 = 0.0 .. 1.0,
+        /// Highest solar heat into the cabin, in the hottest ambient [W].
+        solar_high_w: f64 = 0.0 .. 3000.0,
+        /// Heating of a cabin that was parked in the sun [K/W].
+        parked_cabin_k_w: f64 = 0.0 .. 0.1,
+        /// Lowest state of charge [%].
+        charge_low_pct: f64 = 1.0 .. 100.0,
+        /// Highest state of charge [%].
+        charge_high_pct: f64 = 1.0 .. 100.0,
+        /// Largest number of people.
+        occupants_high: u32 = 1 .. 9,
+    }
+}
+
+impl Validate for DistributionParameters {
+    fn validate(&self) -> Result<(), Violation> {
+        if self.cycles.is_empty() {
+            return Err(Violation::new("cycles", "empty", "must name at least one drive cycle"));
+        }
+        let ranges = &self.ranges;
+        ranges.validate().map_err(|violation| violation.within("ranges"))?;
+        for (key, low, high) in [
+            ("ranges.ambient_low_degc", ranges.ambient_low_degc.0, ranges.ambient_high_degc.0),
+            ("ranges.garage_low_degc", ranges.garage_low_degc.0, ranges.garage_high_degc.0),
+            ("ranges.charge_low_pct", ranges.charge_low_pct, ranges.charge_high_pct),
+        ] {
+            check_range(key, low, f64::NEG_INFINITY, high)?;
+        }
+        Ok(())
+    }
+}
+
+/// A distribution ready to draw from.
+#[derive(Debug, Clone)]
+pub struct Distribution {
+    name: String,
+    parameters: DistributionParameters,
+    template: Arc<Experiment>,
+    standstills: Vec<Vec<usize>>,
+}
+
+/// Sun rises from none at this ambient temperature to its highest at the hottest ambient [degC] (assumed).
+const SUNLESS_DEGC: f64 = -20.0;
+
+impl Distribution {
+    /// Loads a distribution by name or path, with everything that its trips need.
+    ///
+    /// # Errors
+    /// Anything wrong in its file, or in the scenario and cycles that it names.
+    pub fn load(name: &str, garage: &Garage) -> PlantResult<Self> {
+        let parameters: DistributionParameters = library::load(Kind::Episodes, name, &[])?;
+        let template = garage.experiment(&parameters.scenario)?;
+        let mut standstills = Vec::with_capacity(parameters.cycles.len());
+        for cycle in &parameters.cycles {
+            let speeds_m_s = garage.cycle(cycle)?.speeds_m_s().to_vec();
+            standstills.push((0..speeds_m_s.len()).filter(|&second| speeds_m_s[second] == 0.0).collect());
+        }
+        Ok(Self { name: name.to_owned(), parameters, template, standstills })
+    }
+
+    /// Name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Draws a trip.
+    pub fn draw(&self, random: &mut Random) -> Trip {
+        let ranges = &self.parameters.ranges;
+        let mut scenario = self.template.scenario.clone();
+        let cycle = random.index(self.parameters.cycles.len());
+        scenario.cycle.clone_from(&self.parameters.cycles[cycle]);
+        let window =
+            if random.chance(ranges.whole_cycle_share) { None } else { self.draw_window(cycle, random) };
+
+        let ambient_degc = random.between(ranges.ambient_low_degc.0, ranges.ambient_high_degc.0);
+        let from_garage = random.chance(ranges.garage_share);
+        let garage_degc = random.between(ranges.garage_low_degc.0, ranges.garage_high_degc.0);
+        let soak_degc = if from_garage { garage_degc } else { ambient_degc };
+        let dark = random.chance(ranges.dark_share);
+        let season = ((ambient_degc - SUNLESS_DEGC) / (ranges.ambient_high_degc.0 - SUNLESS_DEGC)).clamp(0.0, 1.0);
+        let sun_w = random.between(0.0, ranges.solar_high_w) * season;
+        scenario.climate.ambient_temperature_degc = Celsius(ambient_degc);
+        scenario.climate.solar_gain_w = if dark { 0.0 } else { sun_w };
+        scenario.climate.occupants = 1 + random.index(ranges.occupants_high as usize) as u32;
+        scenario.initial.soak_temperature_degc = Celsius(soak_degc);
+        scenario.initial.state_of_charge_pct = random.between(ranges.charge_low_pct, ranges.charge_high_pct);
+        let parked_in_sun = !from_garage && !dark;
+        scenario.initial.cabin_temperature_degc =
+            parked_in_sun.then_some(Celsius(soak_degc + ranges.parked_cabin_k_w * sun_w));
+        Trip { origin: self.parameters.scenario.clone(), scenario, window }
+    }
+
+    /// Part of a cycle between two standstills; none if the cycle has no such part.
+    fn draw_window(&self, cycle: usize, random: &mut Random) -> Option<(usize, usize)> {
+        let shortest = self.parameters.ranges.shortest_trip_s as usize;
+        let stops = &self.standstills[cycle];
+        let last_stop = *stops.last()?;
+        let starts = stops.partition_point(|&second| second + shortest <= last_stop);
+        if starts == 0 {
+            return None;
+        }
+        let first = stops[random.index(starts)];
+        let ends = &stops[stops.partition_point(|&second| second < first + shortest)..];
+        Some((first, ends[random.index(ends.len())]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drawn(name: &str) -> Vec<Trip> {
+        let distribution = Distribution::load(name, &Garage::default()).expect("built in");
+        let mut random = Random::seeded(3);
+        (0..2000).map(|_| distribution.draw(&mut random)).collect()
+    }
+
+    #[test]
+    fn every_drawn_scenario_passes_the_checks_of_a_scenario_file() {
+        for name in ["train-v0", "test-v0"] {
+            for trip in drawn(name) {
+                trip.scenario.validate().unwrap_or_else(|violation| panic!("{name}: {violation:?}"));
+            }
+        }
+    }
+
+    #[test]
+    fn training_trips_differ_in_length_and_cover_cold_and_heat() {
+        let trips = drawn("train-v0");
+        let ambient = |trip: &Trip| trip.scenario.climate.ambient_temperature_degc.0;
+        assert!(trips.iter().any(|trip| ambient(trip) < -19.0) && trips.iter().any(|trip| ambient(trip) > 39.0));
+        let garage = Garage::default();
+        let mut lengths: Vec<usize> = trips
+            .iter()
+            .take(200)
+            .map(|trip| garage.build(trip).expect("built in").cycle.duration_s())
+            .collect();
+        lengths.sort_unstable();
+        lengths.dedup();
+        assert!(lengths.len() > 50 && lengths[0] >= 300, "{} lengths from {} s", lengths.len(), lengths[0]);
+    }
+
+    #[test]
+    fn test_trips_use_no_training_cycle() {
+        let cycles = |name: &str| {
+            let mut cycles: Vec<String> = drawn(name).into_iter().map(|trip| trip.scenario.cycle).collect();
+            cycles.sort_unstable();
+            cycles.dedup();
+            cycles
+        };
+        let training = cycles("train-v0");
+        assert!(cycles("test-v0").iter().all(|cycle| !training.contains(cycle)));
+    }
+}

@@ -1,0 +1,334 @@
+//! Many environments that step together, on as many threads as allowed.
+//!
+//! Each environment does what it would do alone: results do not depend on the number of threads.
+
+use crate::action;
+use crate::episode::Episode;
+use crate::reward::{PART_NAMES, Terms};
+use crate::setup::Source;
+use hp_plant::error::{PlantError, PlantResult};
+use hp_plant::simulation::EndReason;
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// Parts of a reward.
+pub const PARTS: usize = PART_NAMES.len();
+
+/// Environments that a thread takes at a time.
+const BATCH: usize = 16;
+
+/// What happens to an environment whose trip has ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Autoreset {
+    /// The next step resets it and ignores its action.
+    NextStep,
+    /// It is reset within the step that ended it.
+    SameStep,
+    /// It must be reset by hand.
+    Disabled,
+}
+
+/// Actions of all environments, row by row.
+#[derive(Debug, Clone, Copy)]
+pub enum Actions<'a> {
+    /// Options.
+    Levels(&'a [i64]),
+    /// Normalised values.
+    Values(&'a [f32]),
+}
+
+/// Where the results of a step go, one entry an environment.
+#[derive(Debug)]
+pub struct Results<'a> {
+    /// Observations, row by row.
+    pub observations: &'a mut [f32],
+    /// Rewards.
+    pub rewards: &'a mut [f64],
+    /// Trips that ended.
+    pub terminated: &'a mut [bool],
+    /// Trips cut off by the limit of steps.
+    pub truncated: &'a mut [bool],
+    /// Parts of the rewards, one part after the other.
+    pub parts: &'a mut [f64],
+}
+
+/// A trip that is over.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finished {
+    /// Environment.
+    pub index: usize,
+    /// Why it ended; cut off by the limit of steps where absent.
+    pub end: Option<EndReason>,
+    /// Its terms.
+    pub terms: Terms,
+    /// Parts of the last reward.
+    pub parts: [f64; PARTS],
+    /// Its last observation, where the environment was reset at once.
+    pub last_observation: Option<Vec<f32>>,
+}
+
+/// What else a step tells.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Events {
+    /// Trips that ended.
+    pub finished: Vec<Finished>,
+    /// Environments that were reset.
+    pub reset: Vec<usize>,
+}
+
+/// Environments with their clocks.
+#[derive(Debug)]
+pub struct Vector {
+    episodes: Vec<Episode>,
+    elapsed: Vec<u64>,
+    over: Vec<bool>,
+    autoreset: Autoreset,
+    step_limit: Option<u64>,
+    threads: usize,
+    pool: Option<Pool>,
+}
+
+/// Threads of this process; a fork does not inherit them.
+#[derive(Debug)]
+struct Pool {
+    process: u32,
+    threads: ThreadPool,
+}
+
+/// What one environment works on.
+struct Job<'a> {
+    index: usize,
+    episode: &'a mut Episode,
+    elapsed: &'a mut u64,
+    over: &'a mut bool,
+    observation: &'a mut [f32],
+    reward: &'a mut f64,
+    terminated: &'a mut bool,
+    truncated: &'a mut bool,
+    parts: [f64; PARTS],
+    finished: Option<Finished>,
+    reset: bool,
+    error: Option<PlantError>,
+}
+
+impl Vector {
+    /// Environments before their first reset.
+    #[must_use]
+    pub fn new(episodes: Vec<Episode>, autoreset: Autoreset, step_limit: Option<u64>, threads: usize) -> Self {
+        let count = episodes.len();
+        Self {
+            episodes,
+            elapsed: vec![0; count],
+            over: vec![false; count],
+            autoreset,
+            step_limit,
+            threads: threads.max(1),
+            pool: None,
+        }
+    }
+
+    /// The environments.
+    #[must_use]
+    pub fn episodes(&self) -> &[Episode] {
+        &self.episodes
+    }
+
+    /// The environments.
+    pub fn episodes_mut(&mut self) -> &mut [Episode] {
+        &mut self.episodes
+    }
+
+    /// Number of threads.
+    #[must_use]
+    pub fn threads(&self) -> usize {
+        self.threads
+    }
+
+    /// Environments whose trip is over and that wait for their reset.
+    #[must_use]
+    pub fn over(&self) -> &[bool] {
+        &self.over
+    }
+
+    /// Resets one environment.
+    ///
+    /// # Errors
+    /// See [`Episode::reset`].
+    pub fn reset(&mut self, index: usize, seed: Option<u64>, once: Option<&Source>) -> PlantResult<()> {
+        let episode = &mut self.episodes[index];
+        if let Some(seed) = seed {
+            episode.seed(seed);
+        }
+        episode.reset(once)?;
+        self.elapsed[index] = 0;
+        self.over[index] = false;
+        Ok(())
+    }
+
+    /// Lets every environment go on from where another one (or the same) is now.
+    ///
+    /// # Panics
+    /// `from` has another length or names an environment that is not there.
+    pub fn fork(&mut self, from: &[usize]) {
+        assert_eq!(from.len(), self.episodes.len(), "one index for each environment");
+        self.episodes = from.iter().map(|&index| self.episodes[index].clone()).collect();
+        self.elapsed = from.iter().map(|&index| self.elapsed[index]).collect();
+        self.over = from.iter().map(|&index| self.over[index]).collect();
+    }
+
+    /// State of one environment with its clock.
+    ///
+    /// # Errors
+    /// See [`Episode::to_bytes`].
+    pub fn to_bytes(&self, index: usize) -> PlantResult<Vec<u8>> {
+        let mut bytes = self.elapsed[index].to_le_bytes().to_vec();
+        bytes.push(u8::from(self.over[index]));
+        bytes.extend(self.episodes[index].to_bytes()?);
+        Ok(bytes)
+    }
+
+    /// Restores one environment.
+    ///
+    /// # Errors
+    /// See [`Episode::restore`].
+    pub fn restore(&mut self, index: usize, bytes: &[u8]) -> PlantResult<()> {
+        let (clock, rest) = bytes.split_at_checked(9).unwrap_or((&[0; 9], &[]));
+        self.episodes[index].restore(rest)?;
+        self.elapsed[index] = clock[..8].iter().rev().fold(0, |sum, &byte| (sum << 8) | u64::from(byte));
+        self.over[index] = clock[8] != 0;
+        Ok(())
+    }
+
+    /// Steps all environments. Actions must have been checked.
+    ///
+    /// # Errors
+    /// A file of a new trip cannot be loaded.
+    pub fn step(&mut self, actions: Actions<'_>, results: &mut Results<'_>) -> PlantResult<Events> {
+        let count = self.episodes.len();
+        let Some(first) = self.episodes.first() else { return Ok(Events::default()) };
+        let width = first.setup().observations.rows().len();
+        let threads = self.threads;
+        self.start_threads();
+        let Self { episodes, elapsed, over, autoreset, step_limit, pool, .. } = self;
+        let mut jobs: Vec<Job<'_>> = episodes
+            .iter_mut()
+            .zip(elapsed.iter_mut())
+            .zip(over.iter_mut())
+            .zip(results.observations.chunks_mut(width))
+            .zip(results.rewards.iter_mut())
+            .zip(results.terminated.iter_mut())
+            .zip(results.truncated.iter_mut())
+            .enumerate()
+            .map(|(index, ((((((episode, elapsed), over), observation), reward), terminated), truncated))| Job {
+                index,
+                episode,
+                elapsed,
+                over,
+                observation,
+                reward,
+                terminated,
+                truncated,
+                parts: [0.0; PARTS],
+                finished: None,
+                reset: false,
+                error: None,
+            })
+            .collect();
+        let work = |job: &mut Job<'_>| job.work(actions, *autoreset, *step_limit);
+        match pool {
+            Some(pool) if threads > 1 => {
+                pool.threads.install(|| jobs.par_iter_mut().with_min_len(BATCH).for_each(work));
+            }
+            _ => jobs.iter_mut().for_each(work),
+        }
+        let mut events = Events::default();
+        for job in jobs {
+            if let Some(error) = job.error {
+                return Err(error);
+            }
+            for (part, value) in job.parts.into_iter().enumerate() {
+                results.parts[part * count + job.index] = value;
+            }
+            events.finished.extend(job.finished);
+            if job.reset {
+                events.reset.push(job.index);
+            }
+        }
+        Ok(events)
+    }
+
+    fn start_threads(&mut self) {
+        let process = std::process::id();
+        if let Some(old) = self.pool.take_if(|pool| pool.process != process) {
+            // Its threads stayed in the parent process; waiting for them would never end.
+            std::mem::forget(old);
+        }
+        if self.pool.is_none() && self.threads > 1 {
+            // Where no threads are to be had the calling one does all the work.
+            let threads = ThreadPoolBuilder::new().num_threads(self.threads).build().ok();
+            self.pool = threads.map(|threads| Pool { process, threads });
+        }
+    }
+}
+
+impl Job<'_> {
+    fn work(&mut self, actions: Actions<'_>, autoreset: Autoreset, step_limit: Option<u64>) {
+        (*self.reward, *self.terminated, *self.truncated) = (0.0, false, false);
+        if *self.over && autoreset == Autoreset::NextStep {
+            self.begin();
+        } else {
+            self.step(actions, autoreset, step_limit);
+        }
+        self.episode.observe(self.observation);
+    }
+
+    fn begin(&mut self) {
+        match self.episode.reset(None) {
+            Ok(()) => {
+                *self.elapsed = 0;
+                *self.over = false;
+                self.reset = true;
+            }
+            Err(error) => self.error = Some(error),
+        }
+    }
+
+    fn step(&mut self, actions: Actions<'_>, autoreset: Autoreset, step_limit: Option<u64>) {
+        let mut values = [0.0; hp_plant::command::ACTUATOR_COUNT];
+        let rows = self.episode.setup().actions.rows();
+        let width = rows.len();
+        let place = self.index * width..(self.index + 1) * width;
+        match actions {
+            Actions::Values(all) => values[..width].copy_from_slice(&all[place]),
+            Actions::Levels(all) => {
+                for ((value, &row), &level) in values.iter_mut().zip(rows).zip(&all[place]) {
+                    *value = action::option_value(row, level as usize);
+                }
+            }
+        }
+        let Some(outcome) = self.episode.step(&values[..width]) else { return };
+        *self.elapsed += 1;
+        *self.reward = outcome.reward;
+        self.parts = outcome.parts;
+        *self.terminated = outcome.end.is_some();
+        *self.truncated = step_limit.is_some_and(|limit| *self.elapsed >= limit);
+        *self.over = *self.terminated || *self.truncated;
+        if !*self.over {
+            return;
+        }
+        let mut finished = Finished {
+            index: self.index,
+            end: outcome.end,
+            terms: self.episode.terms().copied().unwrap_or_default(),
+            parts: outcome.parts,
+            last_observation: None,
+        };
+        if autoreset == Autoreset::SameStep {
+            self.episode.observe(self.observation);
+            finished.last_observation = Some(self.observation.to_vec());
+            self.parts = [0.0; PARTS];
+            self.begin();
+        }
+        self.finished = Some(finished);
+    }
+}
