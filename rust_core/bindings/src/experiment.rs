@@ -1,7 +1,7 @@
 //! Scenarios and runs.
 
 use crate::errors::to_python;
-use hp_plant::command::{ACTUATOR_COUNT, Command};
+use hp_plant::command::{ACTUATOR_COUNT, Command, Demand};
 use hp_plant::config::library::Override;
 use hp_plant::signals;
 use hp_plant::simulation;
@@ -10,6 +10,7 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Totals of a run and why it ended.
 type Totals<'py> = (Bound<'py, PyDict>, &'static str);
@@ -91,6 +92,29 @@ impl Experiment {
         (0..ACTUATOR_COUNT).map(|row| self.inner.plant.ranges.range(row)).collect()
     }
 
+    /// Limits that a run is judged by.
+    fn limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let limits = PyDict::new(py);
+        for (name, value) in hp_plant::summary::limits(&self.inner.plant.vehicle) {
+            limits.set_item(name, value)?;
+        }
+        Ok(limits)
+    }
+
+    /// Command of named actuators in physical units; the others have their defaults.
+    fn encode<'py>(&self, py: Python<'py>, settings: BTreeMap<String, Setting>) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let ranges = &self.inner.plant.ranges;
+        let mut command = ranges.encode(&Demand::default());
+        for (name, setting) in settings {
+            match setting {
+                Setting::Option(option) => ranges.choose(&mut command, &name, &option),
+                Setting::Value(value) => ranges.set(&mut command, &name, value),
+            }
+            .map_err(to_python)?;
+        }
+        Ok(command.0.to_vec().into_pyarray(py))
+    }
+
     fn simulate<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyDict>, &'static str)> {
         let trajectory = py.detach(|| self.inner.simulate());
         let rows = trajectory.values.len() / trajectory.columns;
@@ -109,6 +133,13 @@ impl Experiment {
     }
 }
 
+/// Physical value or option of an actuator.
+#[derive(FromPyObject)]
+enum Setting {
+    Option(String),
+    Value(f64),
+}
+
 /// A run in progress.
 #[pyclass(module = "hp_gym._core")]
 pub struct Run {
@@ -119,6 +150,11 @@ pub struct Run {
 
 #[pymethods]
 impl Run {
+    #[getter]
+    fn experiment(&self, py: Python<'_>) -> Py<Experiment> {
+        self.experiment.clone_ref(py)
+    }
+
     fn rule_based_command<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
         let command = self.experiment.borrow(py).inner.rule_based_command(&mut self.inner);
         command.0.to_vec().into_pyarray(py)

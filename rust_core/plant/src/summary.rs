@@ -1,6 +1,7 @@
 //! Totals of a run.
 
 use crate::config::ZERO_CELSIUS_K;
+use crate::config::vehicle::VehicleParameters;
 use crate::flows::{FLOW_COUNT, Flow, Flows};
 use crate::plant::{CONTROL_PERIOD_S, Disturbance, Plant, StepRecord};
 use crate::state::State;
@@ -17,6 +18,18 @@ pub const COMFORT_BAND_K: f64 = 1.0;
 /// Largest overshoot that counts as rounding and not as a breach.
 const PRESSURE_TOLERANCE_BAR: f64 = 0.05;
 const TEMPERATURE_TOLERANCE_K: f64 = 0.1;
+
+/// Limits that a run of a vehicle is judged by, by name.
+#[must_use]
+pub fn limits(vehicle: &VehicleParameters) -> [(&'static str, f64); 5] {
+    [
+        ("cabin_lowest_degc", COMFORT_TEMPERATURE_DEGC - COMFORT_BAND_K),
+        ("cabin_highest_degc", COMFORT_TEMPERATURE_DEGC + COMFORT_BAND_K),
+        ("htc_supply_highest_degc", vehicle.htc.maximum_supply_degc.0),
+        ("chiller_supply_lowest_degc", vehicle.chiller.minimum_supply_degc.0),
+        ("condensing_pressure_highest_bar", vehicle.refrigeration.maximum_pressure_bar),
+    ]
+}
 
 /// Running totals.
 #[derive(Debug, Clone, Copy, PartialEq)]
