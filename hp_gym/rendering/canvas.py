@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
+from itertools import pairwise
 from pathlib import Path
 from typing import Final, TypeAlias
 
@@ -111,7 +112,7 @@ class Canvas:
             width: Width of the pipe.
             halo: Whether to keep what lies below at a distance.
         """
-        legs = [leg for run in runs for leg in zip(run, run[1:], strict=False)]
+        legs = [leg for run in runs for leg in pairwise(run)]
         layers = [(WHITE, 0.5 * width + HALO)] if halo else []
         layers += [(OUTLINE, 0.5 * width + PIPE_EDGE), (colour, 0.5 * width)]
         for layer, half in layers:

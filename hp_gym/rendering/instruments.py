@@ -8,8 +8,8 @@ from hp_gym.rendering import colours
 from hp_gym.rendering import layout as at
 from hp_gym.rendering.canvas import Box, Canvas, Point
 from hp_gym.rendering.colours import CARD, ELECTRIC, HEAT, HEAT_EDGE, INK, MUTED, TRACK, WHITE
+from hp_gym.rendering.heat import arrow_width
 from hp_gym.rendering.quantities import clock, degc, kilowatt, number
-from hp_gym.rendering.schematic import arrow_width
 
 CABIN_TOP: Final = 52.0
 BATTERY_TOP: Final = 140.0

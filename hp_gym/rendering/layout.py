@@ -14,16 +14,16 @@ COMPRESSOR_X: Final = 44.0
 VALVE_X: Final = 122.0
 EXCHANGER_LEFT: Final = 16.0
 EXCHANGER_RIGHT: Final = 148.0
-EXCHANGER_MARGIN: Final = 14.0
+EXCHANGER_MARGIN: Final = 12.0
 """How far an exchanger reaches beyond the rails of its loop."""
 
 # Rails of the coolant loops, HTC above the components and chiller loop below.
-CAPTION_OFFSET: Final = 20.0
+CAPTION_OFFSET: Final = 19.0
 """From a rail to the line of text beyond it."""
-HTC_RETURN_Y: Final = 80.0
-HTC_SUPPLY_Y: Final = 116.0
-CHILLER_SUPPLY_Y: Final = 346.0
-CHILLER_RETURN_Y: Final = 382.0
+HTC_RETURN_Y: Final = 77.0
+HTC_SUPPLY_Y: Final = 118.0
+CHILLER_SUPPLY_Y: Final = 344.0
+CHILLER_RETURN_Y: Final = 385.0
 CENTRE_Y: Final = 231.0
 RAIL_WIDTH: Final = 6.0
 BRANCH_WIDTH: Final = 4.5
@@ -35,7 +35,7 @@ RAIL_OVERHANG: Final = 15.0
 CHEVRON: Final = 5.0
 """Size of a mark of flow direction."""
 
-MEMBER_HALF_WIDTH: Final = 38.0
+MEMBER_HALF_WIDTH: Final = 39.5
 MEMBER_TOP: Final = 198.0
 MEMBER_BOTTOM: Final = 264.0
 PTC_X: Final = 330.0
@@ -108,10 +108,13 @@ MOTOR: Final = Member(
     ("motor_chiller_heat_flow_w",),
 )
 TRANSMISSION: Final = Member(
-    ("Trans-", "mission"),
+    ("Transmission",),
     722.0,
     "transmission_temperature_degc",
     "transmission_connection",
     ("transmission_chiller_heat_flow_w",),
 )
+NUMBERS_RIGHT: Final = THERMAL_BATTERY.x - LEG_OFFSET - 5.0
+"""Right end of the numbers between the exchangers and the first component."""
+
 MEMBERS: Final = (THERMAL_BATTERY, CABIN, BATTERY, AMBIENT, MOTOR, TRANSMISSION)

@@ -5,7 +5,7 @@ from typing import Final
 
 from hp_gym.rendering.layout import MEMBERS
 
-UNKNOWN: Final = "–"
+UNKNOWN: Final = "\N{EN DASH}"
 
 SIGNALS: Final[tuple[str, ...]] = (
     "time_s",
@@ -38,7 +38,7 @@ def number(value: float, digits: int = 1) -> str:
     if not math.isfinite(value):
         return UNKNOWN
     # Adding zero turns minus zero into zero.
-    return f"{round(value, digits) + 0.0:.{digits}f}".replace("-", "−")
+    return f"{round(value, digits) + 0.0:.{digits}f}".replace("-", "\N{MINUS SIGN}")
 
 
 def degc(value: float, digits: int = 1) -> str:

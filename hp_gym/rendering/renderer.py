@@ -1,6 +1,7 @@
 """The picture as a whole."""
 
 import math
+import operator
 from collections.abc import Mapping, Sequence
 from typing import Final
 
@@ -8,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from hp_gym.rendering import instruments, refrigerant, schematic
+from hp_gym.rendering import instruments, loops, refrigerant, schematic
 from hp_gym.rendering import layout as at
 from hp_gym.rendering.canvas import Canvas
 from hp_gym.rendering.colours import WHITE
 from hp_gym.rendering.cycle_strip import CycleStrip
 from hp_gym.rendering.quantities import SIGNALS
 
-OVERSAMPLING: Final = 3
-"""Pixels drawn along each edge of a pixel shown, for smooth edges."""
+FINE_PIXELS: Final = 1280 * 720
+"""Largest picture that is drawn three times as large, for smooth edges; others are drawn twice as large."""
 SMALLEST: Final = (480, 270)
 LARGEST: Final = (2560, 1440)
 
@@ -26,7 +27,7 @@ class Renderer:
 
     Args:
         width: Width of the picture in pixels, 480 to 2560.
-        height: Height of the picture in pixels, 270 to 1440. The drawing is 16 to 9; what is left stays white.
+        height: Height of the picture in pixels, 270 to 1440. The drawing is 16 to 9; the rest stays white.
 
     Raises:
         ValueError: The size is out of range.
@@ -34,24 +35,16 @@ class Renderer:
     """
 
     def __init__(self, width: int = 960, height: int = 540) -> None:
-        for name, size, low, high in zip(
-            ("width", "height"), (width, height), SMALLEST, LARGEST, strict=True
-        ):
-            if not isinstance(size, int | np.integer) or isinstance(size, bool):
-                msg = f"{name} is a whole number of pixels, not {size!r}"
-                raise TypeError(msg)
-            if not low <= size <= high:
-                msg = f"{name} is {size} pixels; {low} to {high} are possible"
-                raise ValueError(msg)
-        self.width = int(width)
-        self.height = int(height)
-        self._scale = OVERSAMPLING * min(width / at.WIDTH, height / at.HEIGHT)
+        self.width = _pixels("width", width, SMALLEST[0], LARGEST[0])
+        self.height = _pixels("height", height, SMALLEST[1], LARGEST[1])
+        self._oversampling = 3 if self.width * self.height <= FINE_PIXELS else 2
+        self._scale = self._oversampling * min(self.width / at.WIDTH, self.height / at.HEIGHT)
         self._origin = (
-            0.5 * (OVERSAMPLING * width - self._scale * at.WIDTH),
-            0.5 * (OVERSAMPLING * height - self._scale * at.HEIGHT),
+            0.5 * (self._oversampling * self.width - self._scale * at.WIDTH),
+            0.5 * (self._oversampling * self.height - self._scale * at.HEIGHT),
         )
         self._frame = self._blank()
-        for draw_static in (schematic.draw_labels, refrigerant.draw_labels, instruments.draw_frame):
+        for draw_static in (loops.draw_labels, refrigerant.draw_labels, instruments.draw_frame):
             draw_static(self._canvas(self._frame))
         self._cycle_key = b""
 
@@ -92,7 +85,7 @@ class Renderer:
         schematic.draw(canvas, now)
         refrigerant.draw(canvas, now)
         instruments.draw(canvas, now, target_degc, battery_target_degc)
-        return np.array(image.reduce(OVERSAMPLING))
+        return np.array(image.reduce(self._oversampling))
 
     def _prepare(self, speeds_m_s: NDArray[np.float64]) -> None:
         """Draws what stays the same as long as the drive cycle does."""
@@ -114,7 +107,19 @@ class Renderer:
         self._cycle_key = key
 
     def _blank(self) -> Image.Image:
-        return Image.new("RGB", (OVERSAMPLING * self.width, OVERSAMPLING * self.height), WHITE)
+        return Image.new("RGB", (self._oversampling * self.width, self._oversampling * self.height), WHITE)
 
     def _canvas(self, image: Image.Image) -> Canvas:
         return Canvas(image, self._scale, self._origin)
+
+
+def _pixels(name: str, size: int, lowest: int, highest: int) -> int:
+    try:
+        pixels = operator.index(size)
+    except TypeError:
+        msg = f"{name} is a whole number of pixels, not {size!r}"
+        raise TypeError(msg) from None
+    if not lowest <= pixels <= highest:
+        msg = f"{name} is {pixels} pixels; {lowest} to {highest} are possible"
+        raise ValueError(msg)
+    return pixels

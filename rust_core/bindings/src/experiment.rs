@@ -46,7 +46,9 @@ impl Experiment {
         let overrides = parse_overrides(&overrides)?;
         let mut inner = simulation::Experiment::load(scenario, controller, &overrides).map_err(to_python)?;
         if !(1..=1000).contains(&substeps) {
-            return Err(PyValueError::new_err(format!("substeps is {substeps}, but must be between 1 and 1000")));
+            return Err(PyValueError::new_err(format!(
+                "substeps is {substeps}, but must be between 1 and 1000"
+            )));
         }
         inner.plant = inner.plant.with_substeps(substeps);
         Ok(Self { inner })
@@ -102,7 +104,11 @@ impl Experiment {
     }
 
     /// Command of named actuators in physical units; the others have their defaults.
-    fn encode<'py>(&self, py: Python<'py>, settings: BTreeMap<String, Setting>) -> PyResult<Bound<'py, PyArray1<f32>>> {
+    fn encode<'py>(
+        &self,
+        py: Python<'py>,
+        settings: BTreeMap<String, Setting>,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let ranges = &self.inner.plant.ranges;
         let mut command = ranges.encode(&Demand::default());
         for (name, setting) in settings {
@@ -115,7 +121,10 @@ impl Experiment {
         Ok(command.0.to_vec().into_pyarray(py))
     }
 
-    fn simulate<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyDict>, &'static str)> {
+    fn simulate<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyDict>, &'static str)> {
         let trajectory = py.detach(|| self.inner.simulate());
         let rows = trajectory.values.len() / trajectory.columns;
         let values = trajectory.values.into_pyarray(py).reshape([rows, trajectory.columns])?;
@@ -166,7 +175,10 @@ impl Run {
         }
         let values = command.as_slice()?;
         let command: [f32; ACTUATOR_COUNT] = values.try_into().map_err(|_| {
-            PyValueError::new_err(format!("command has {} values, but must have {ACTUATOR_COUNT}", values.len()))
+            PyValueError::new_err(format!(
+                "command has {} values, but must have {ACTUATOR_COUNT}",
+                values.len()
+            ))
         })?;
         if let Some(row) = command.iter().position(|value| !(-1.0..=1.0).contains(value)) {
             let name = hp_plant::command::ACTUATORS[row].name;
@@ -176,7 +188,8 @@ impl Run {
             )));
         }
         let experiment = self.experiment.borrow(py);
-        self.ended = experiment.inner.step(&mut self.inner, &Command(command)).map(simulation::EndReason::name);
+        self.ended =
+            experiment.inner.step(&mut self.inner, &Command(command)).map(simulation::EndReason::name);
         Ok(self.ended)
     }
 
@@ -194,7 +207,11 @@ impl Run {
 /// Totals of several scenarios with the same overrides, run side by side.
 #[pyfunction]
 #[pyo3(signature = (scenarios, overrides=Vec::new()))]
-pub fn totals<'py>(py: Python<'py>, scenarios: Vec<String>, overrides: Vec<String>) -> PyResult<Vec<Totals<'py>>> {
+pub fn totals<'py>(
+    py: Python<'py>,
+    scenarios: Vec<String>,
+    overrides: Vec<String>,
+) -> PyResult<Vec<Totals<'py>>> {
     let overrides = parse_overrides(&overrides)?;
     let results: Vec<_> = py.detach(|| {
         let run = |name: &String| Ok(simulation::Experiment::load(name, None, &overrides)?.totals());

@@ -10,9 +10,9 @@ use pyo3::prelude::*;
 mod _core {
     #[pymodule_export]
     use super::errors::ConfigurationError;
+    use super::errors::to_python;
     #[pymodule_export]
     use super::experiment::{Experiment, Run, signal_table, totals};
-    use super::errors::to_python;
     use hp_plant::command::{ACTUATORS, Scale};
     use hp_plant::config::library::{self, Kind};
     use hp_plant::error::PlantError;
@@ -24,7 +24,14 @@ mod _core {
     }
 
     fn kind(word: &str) -> PyResult<Kind> {
-        let kinds = [Kind::Vehicle, Kind::Controller, Kind::Scenario, Kind::Cycle, Kind::Refrigerant, Kind::Calibration];
+        let kinds = [
+            Kind::Vehicle,
+            Kind::Controller,
+            Kind::Scenario,
+            Kind::Cycle,
+            Kind::Refrigerant,
+            Kind::Calibration,
+        ];
         kinds.into_iter().find(|kind| kind.word() == word).ok_or_else(|| {
             let available = kinds.map(Kind::word).join(", ");
             to_python(PlantError::Unknown { kind: "kind of configuration", name: word.to_owned(), available })

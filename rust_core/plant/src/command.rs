@@ -219,7 +219,9 @@ impl ActuatorRanges {
             }
         }
         ranges[COMPRESSOR] = (compressor.minimum_power_w, compressor.maximum_power_w);
-        for (row, pump) in [(HTC_FLOW, &vehicle.htc.circuit.pump), (CHILLER_FLOW, &vehicle.chiller.circuit.pump)] {
+        for (row, pump) in
+            [(HTC_FLOW, &vehicle.htc.circuit.pump), (CHILLER_FLOW, &vehicle.chiller.circuit.pump)]
+        {
             ranges[row] = (pump.minimum_flow_kg_s, pump.maximum_flow_kg_s);
         }
         for range in &mut ranges[REQUESTS..REQUESTS + 6] {
@@ -320,15 +322,16 @@ impl ActuatorRanges {
             Scale::Choice(options) => options,
             Scale::Linear | Scale::OffThenLogarithmic => &[],
         };
-        let chosen = options.iter().position(|known| *known == option).ok_or_else(|| PlantError::InvalidArgument {
-            what: name.to_owned(),
-            value: format!("`{option}`"),
-            allowed: if options.is_empty() {
-                format!("must be a number of {}", ACTUATORS[row].unit)
-            } else {
-                format!("must be one of {}", options.join(", "))
-            },
-        })?;
+        let chosen =
+            options.iter().position(|known| *known == option).ok_or_else(|| PlantError::InvalidArgument {
+                what: name.to_owned(),
+                value: format!("`{option}`"),
+                allowed: if options.is_empty() {
+                    format!("must be a number of {}", ACTUATORS[row].unit)
+                } else {
+                    format!("must be one of {}", options.join(", "))
+                },
+            })?;
         command.0[row] = self.normalise(row, chosen as f64);
         Ok(())
     }

@@ -117,9 +117,12 @@ impl Summary {
     fn check_limits(&mut self, plant: &Plant, before: &State, after: &State, record: &StepRecord) {
         let nodes = &plant.assembly.nodes;
         let vehicle = &plant.vehicle;
-        let htc = (before.temperatures_k[nodes.htc_supply.index()], after.temperatures_k[nodes.htc_supply.index()]);
-        let chiller =
-            (before.temperatures_k[nodes.chiller_supply.index()], after.temperatures_k[nodes.chiller_supply.index()]);
+        let htc =
+            (before.temperatures_k[nodes.htc_supply.index()], after.temperatures_k[nodes.htc_supply.index()]);
+        let chiller = (
+            before.temperatures_k[nodes.chiller_supply.index()],
+            after.temperatures_k[nodes.chiller_supply.index()],
+        );
         self.highest_htc_supply_degc = self.highest_htc_supply_degc.max(htc.1 - ZERO_CELSIUS_K);
         self.lowest_chiller_supply_degc = self.lowest_chiller_supply_degc.min(chiller.1 - ZERO_CELSIUS_K);
         if !record.refrigeration.running() {
@@ -128,7 +131,8 @@ impl Summary {
         let pressure_bar = record.refrigeration.condensing_pressure_pa * 1e-5;
         self.highest_pressure_bar = self.highest_pressure_bar.max(pressure_bar);
         let too_high = pressure_bar > vehicle.refrigeration.maximum_pressure_bar + PRESSURE_TOLERANCE_BAR;
-        let too_hot = htc.1 > vehicle.htc.maximum_supply_degc.kelvin() + TEMPERATURE_TOLERANCE_K && htc.1 > htc.0;
+        let too_hot =
+            htc.1 > vehicle.htc.maximum_supply_degc.kelvin() + TEMPERATURE_TOLERANCE_K && htc.1 > htc.0;
         let too_cold = chiller.1 < vehicle.chiller.minimum_supply_degc.kelvin() - TEMPERATURE_TOLERANCE_K
             && chiller.1 < chiller.0;
         self.limit_breaches += f64::from(u8::from(too_high || too_hot || too_cold));
@@ -170,7 +174,11 @@ impl Summary {
         .map(|(name, value)| (name.to_owned(), value))
         .collect();
         for &flow in &Flow::ALL[..FLOW_COUNT] {
-            let stem = flow.column().trim_end_matches("_w").trim_end_matches("_power").trim_end_matches("_heat_flow");
+            let stem = flow
+                .column()
+                .trim_end_matches("_w")
+                .trim_end_matches("_power")
+                .trim_end_matches("_heat_flow");
             values.push((format!("{stem}_energy_kwh"), kwh(flow)));
         }
         values

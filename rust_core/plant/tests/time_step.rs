@@ -14,7 +14,8 @@ struct Outcome {
 }
 
 fn run(case: &str, substeps: u32) -> Outcome {
-    let mut experiment = Experiment::load(&format!("jeffs2019/{case}"), None, &[]).expect("built-in scenario");
+    let mut experiment =
+        Experiment::load(&format!("jeffs2019/{case}"), None, &[]).expect("built-in scenario");
     experiment.plant = experiment.plant.with_substeps(substeps);
     let nodes = experiment.plant.assembly.network.nodes();
     let mut run = experiment.start();
