@@ -7,8 +7,8 @@ import numpy as np
 from agents.reproduction.case1_claims import CABIN, HTC, HTC_TARGET_DEGC
 from agents.reproduction.claim import claim
 from agents.reproduction.conditions import Outcome, above, at_least, at_most, below
-from agents.reproduction.paper import LABELS
 from agents.reproduction.measures import energy_kwh, first_time_s, mean
+from agents.reproduction.paper import LABELS
 from agents.reproduction.runs import Runs
 
 PRESSURE_TOLERANCE_BAR: Final = 0.05

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-LARGEST_SHORTFALL = 10.0
+LARGEST_SHORTFALL = 100.0
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,3 @@ LABELS: Final = {scenario.id: scenario.label for scenario in PUBLISHED_SCENARIOS
 
 LITERAL_VEHICLE: Final = "jeffs2019-40ah"
 """Vehicle with the 40 Ah cells of the paper's section 2.1, which Table 1 contradicts."""
-
-PUBLISHED_SPEED_RATIO: Final = {"case 1": 4.6, "case 2": 4.2}
-"""Simulated time over computing time in sections 3.1 and 3.2."""

@@ -87,7 +87,8 @@ fn checked<T: numpy::Element + Copy>(
             Some(count) => format!("({count}, {})", rows.len()),
         };
         let names: Vec<&str> = rows.iter().map(|&row| ACTUATORS[row].name).collect();
-        let message = format!("action has the shape {shape:?}, but must have {allowed}: {}", names.join(", "));
+        let message =
+            format!("action has the shape {shape:?}, but must have {allowed}: {}", names.join(", "));
         return Err(PyValueError::new_err(message));
     }
     for (place, &value) in array.as_slice()?.iter().enumerate() {

@@ -17,8 +17,8 @@ use std::sync::Arc;
 
 /// Settings from JSON, made ready.
 pub fn setup(settings: &str) -> PyResult<Arc<Setup>> {
-    let settings: Settings =
-        serde_json::from_str(settings).map_err(|error| PyValueError::new_err(format!("settings: {error}")))?;
+    let settings: Settings = serde_json::from_str(settings)
+        .map_err(|error| PyValueError::new_err(format!("settings: {error}")))?;
     Ok(Arc::new(Setup::new(&settings).map_err(to_python)?))
 }
 
@@ -102,7 +102,11 @@ impl Episode {
 
     fn require_open(&self, py: Python<'_>) -> PyResult<()> {
         if self.closed {
-            return Err(gymnasium_error(py, "ClosedEnvironmentError", "this environment was closed; make another one"));
+            return Err(gymnasium_error(
+                py,
+                "ClosedEnvironmentError",
+                "this environment was closed; make another one",
+            ));
         }
         Ok(())
     }
@@ -122,8 +126,9 @@ impl Episode {
     #[pyo3(signature = (settings, scenario=None, distribution=None))]
     fn new(settings: String, scenario: Option<String>, distribution: Option<String>) -> PyResult<Self> {
         let setup = setup(&settings)?;
-        let source = source(&setup, scenario.as_deref(), distribution.as_deref())?
-            .ok_or_else(|| PyValueError::new_err("scenario and distribution are None, but one must be given"))?;
+        let source = source(&setup, scenario.as_deref(), distribution.as_deref())?.ok_or_else(|| {
+            PyValueError::new_err("scenario and distribution are None, but one must be given")
+        })?;
         let observation = vec![0.0; setup.observations.rows().len()];
         let inner = episode::Episode::new(setup, source);
         Ok(Self { settings, scenario, distribution, inner, observation, closed: false })
@@ -225,7 +230,8 @@ impl Episode {
     /// Speed at every full second of the trip.
     fn speeds_m_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.require_begun(py)?;
-        let speeds = self.inner.trip().map_or_else(Vec::new, |(_, experiment)| experiment.cycle.speeds_m_s().to_vec());
+        let speeds =
+            self.inner.trip().map_or_else(Vec::new, |(_, experiment)| experiment.cycle.speeds_m_s().to_vec());
         Ok(speeds.into_pyarray(py))
     }
 
@@ -268,7 +274,8 @@ impl Episode {
     #[allow(clippy::type_complexity)]
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
-    ) -> PyResult<(Bound<'py, PyAny>, (String, Option<String>, Option<String>), (Bound<'py, PyBytes>, bool))> {
+    ) -> PyResult<(Bound<'py, PyAny>, (String, Option<String>, Option<String>), (Bound<'py, PyBytes>, bool))>
+    {
         let py = slf.py();
         let this = slf.borrow();
         let arguments = (this.settings.clone(), this.scenario.clone(), this.distribution.clone());

@@ -5,7 +5,12 @@ use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-create_exception!(_core, ConfigurationError, PyValueError, "A file, name or value that the plant does not accept.");
+create_exception!(
+    _core,
+    ConfigurationError,
+    PyValueError,
+    "A file, name or value that the plant does not accept."
+);
 
 /// Python exception for an error of the plant.
 pub fn to_python(error: PlantError) -> PyErr {

@@ -1,7 +1,7 @@
 //! Scenarios and runs.
 
 use crate::errors::to_python;
-use hp_plant::command::{ACTUATOR_COUNT, Command};
+use hp_plant::command::{ACTUATOR_COUNT, Command, Demand};
 use hp_plant::config::library::Override;
 use hp_plant::signals;
 use hp_plant::simulation;
@@ -10,6 +10,7 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Totals of a run and why it ended.
 type Totals<'py> = (Bound<'py, PyDict>, &'static str);
@@ -45,7 +46,9 @@ impl Experiment {
         let overrides = parse_overrides(&overrides)?;
         let mut inner = simulation::Experiment::load(scenario, controller, &overrides).map_err(to_python)?;
         if !(1..=1000).contains(&substeps) {
-            return Err(PyValueError::new_err(format!("substeps is {substeps}, but must be between 1 and 1000")));
+            return Err(PyValueError::new_err(format!(
+                "substeps is {substeps}, but must be between 1 and 1000"
+            )));
         }
         inner = inner.with_substeps(substeps);
         Ok(Self { inner })
@@ -91,7 +94,37 @@ impl Experiment {
         (0..ACTUATOR_COUNT).map(|row| self.inner.plant.ranges.range(row)).collect()
     }
 
-    fn simulate<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyDict>, &'static str)> {
+    /// Limits that a run is judged by.
+    fn limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let limits = PyDict::new(py);
+        for (name, value) in hp_plant::summary::limits(&self.inner.plant.vehicle) {
+            limits.set_item(name, value)?;
+        }
+        Ok(limits)
+    }
+
+    /// Command of named actuators in physical units; the others have their defaults.
+    fn encode<'py>(
+        &self,
+        py: Python<'py>,
+        settings: BTreeMap<String, Setting>,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let ranges = &self.inner.plant.ranges;
+        let mut command = ranges.encode(&Demand::default());
+        for (name, setting) in settings {
+            match setting {
+                Setting::Option(option) => ranges.choose(&mut command, &name, &option),
+                Setting::Value(value) => ranges.set(&mut command, &name, value),
+            }
+            .map_err(to_python)?;
+        }
+        Ok(command.0.to_vec().into_pyarray(py))
+    }
+
+    fn simulate<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyDict>, &'static str)> {
         let trajectory = py.detach(|| self.inner.simulate());
         let rows = trajectory.values.len() / trajectory.columns;
         let values = trajectory.values.into_pyarray(py).reshape([rows, trajectory.columns])?;
@@ -109,6 +142,13 @@ impl Experiment {
     }
 }
 
+/// Physical value or option of an actuator.
+#[derive(FromPyObject)]
+enum Setting {
+    Option(String),
+    Value(f64),
+}
+
 /// A run in progress.
 #[pyclass(module = "hp_gym._core")]
 pub struct Run {
@@ -119,6 +159,11 @@ pub struct Run {
 
 #[pymethods]
 impl Run {
+    #[getter]
+    fn experiment(&self, py: Python<'_>) -> Py<Experiment> {
+        self.experiment.clone_ref(py)
+    }
+
     fn rule_based_command<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
         let command = self.experiment.borrow(py).inner.rule_based_command(&mut self.inner);
         command.0.to_vec().into_pyarray(py)
@@ -130,7 +175,10 @@ impl Run {
         }
         let values = command.as_slice()?;
         let command: [f32; ACTUATOR_COUNT] = values.try_into().map_err(|_| {
-            PyValueError::new_err(format!("command has {} values, but must have {ACTUATOR_COUNT}", values.len()))
+            PyValueError::new_err(format!(
+                "command has {} values, but must have {ACTUATOR_COUNT}",
+                values.len()
+            ))
         })?;
         if let Some(row) = command.iter().position(|value| !(-1.0..=1.0).contains(value)) {
             let name = hp_plant::command::ACTUATORS[row].name;
@@ -140,7 +188,8 @@ impl Run {
             )));
         }
         let experiment = self.experiment.borrow(py);
-        self.ended = experiment.inner.step(&mut self.inner, &Command(command)).map(simulation::EndReason::name);
+        self.ended =
+            experiment.inner.step(&mut self.inner, &Command(command)).map(simulation::EndReason::name);
         Ok(self.ended)
     }
 
@@ -158,7 +207,11 @@ impl Run {
 /// Totals of several scenarios with the same overrides, run side by side.
 #[pyfunction]
 #[pyo3(signature = (scenarios, overrides=Vec::new()))]
-pub fn totals<'py>(py: Python<'py>, scenarios: Vec<String>, overrides: Vec<String>) -> PyResult<Vec<Totals<'py>>> {
+pub fn totals<'py>(
+    py: Python<'py>,
+    scenarios: Vec<String>,
+    overrides: Vec<String>,
+) -> PyResult<Vec<Totals<'py>>> {
     let overrides = parse_overrides(&overrides)?;
     let results: Vec<_> = py.detach(|| {
         let run = |name: &String| Ok(simulation::Experiment::load(name, None, &overrides)?.totals());

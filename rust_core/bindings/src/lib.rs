@@ -15,11 +15,11 @@ mod _core {
     use super::episode::{Episode, observation_table, reward_parts};
     #[pymodule_export]
     use super::errors::ConfigurationError;
+    use super::errors::to_python;
     #[pymodule_export]
     use super::experiment::{Experiment, Run, signal_table, totals};
     #[pymodule_export]
     use super::vector::Vector;
-    use super::errors::to_python;
     use hp_plant::command::{ACTUATORS, Scale};
     use hp_plant::config::library::{self, Kind};
     use hp_plant::error::PlantError;
@@ -31,7 +31,16 @@ mod _core {
     }
 
     fn kind(word: &str) -> PyResult<Kind> {
-        let kinds = [Kind::Vehicle, Kind::Controller, Kind::Scenario, Kind::Cycle, Kind::Refrigerant, Kind::Calibration, Kind::Episodes, Kind::Reward];
+        let kinds = [
+            Kind::Vehicle,
+            Kind::Controller,
+            Kind::Scenario,
+            Kind::Cycle,
+            Kind::Refrigerant,
+            Kind::Calibration,
+            Kind::Episodes,
+            Kind::Reward,
+        ];
         kinds.into_iter().find(|kind| kind.word() == word).ok_or_else(|| {
             let available = kinds.map(Kind::word).join(", ");
             to_python(PlantError::Unknown { kind: "kind of configuration", name: word.to_owned(), available })

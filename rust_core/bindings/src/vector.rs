@@ -65,7 +65,11 @@ impl Sources<'_> {
 impl Vector {
     fn require_open(&self, py: Python<'_>) -> PyResult<()> {
         if self.closed {
-            return Err(gymnasium_error(py, "ClosedEnvironmentError", "this environment was closed; make another one"));
+            return Err(gymnasium_error(
+                py,
+                "ClosedEnvironmentError",
+                "this environment was closed; make another one",
+            ));
         }
         Ok(())
     }
@@ -108,16 +112,17 @@ impl Vector {
             "SameStep" => Autoreset::SameStep,
             "Disabled" => Autoreset::Disabled,
             other => {
-                let message = format!("autoreset mode is {other}, but must be NextStep, SameStep or Disabled");
+                let message =
+                    format!("autoreset mode is {other}, but must be NextStep, SameStep or Disabled");
                 return Err(PyValueError::new_err(message));
             }
         };
         let mut sources = Sources { setup: &setup, loaded: HashMap::new() };
         let mut episodes = Vec::with_capacity(scenarios.len());
         for (scenario, distribution) in scenarios.iter().zip(&distributions) {
-            let source = sources
-                .get(scenario.as_ref(), distribution.as_ref())?
-                .ok_or_else(|| PyValueError::new_err("scenario and distribution are None, but one must be given"))?;
+            let source = sources.get(scenario.as_ref(), distribution.as_ref())?.ok_or_else(|| {
+                PyValueError::new_err("scenario and distribution are None, but one must be given")
+            })?;
             episodes.push(Episode::new(Arc::clone(&setup), source));
         }
         let inner = vector::Vector::new(episodes, mode, step_limit, threads);

@@ -125,7 +125,14 @@ impl ActionTable {
     ///
     /// The cabin's air inlet depends on recirculation: where an agent controls that too, a connection counts as
     /// granted if some recirculated share makes it so.
-    pub fn write_mask(&self, plant: &Plant, state: &State, ambient_k: f64, defaults: &Defaults, mask: &mut [bool]) {
+    pub fn write_mask(
+        &self,
+        plant: &Plant,
+        state: &State,
+        ambient_k: f64,
+        defaults: &Defaults,
+        mask: &mut [bool],
+    ) {
         let mut place = 0;
         for &row in &self.rows {
             for option in 0..options(row) {
@@ -212,7 +219,13 @@ impl Defaults {
 
     /// The whole command for values of the selected rows.
     #[must_use]
-    pub fn complete(&self, table: &ActionTable, values: &[f32], experiment: &Experiment, time_s: f64) -> Command {
+    pub fn complete(
+        &self,
+        table: &ActionTable,
+        values: &[f32],
+        experiment: &Experiment,
+        time_s: f64,
+    ) -> Command {
         let ranges = &experiment.plant.ranges;
         let mut command = self.command;
         if self.requests_change {

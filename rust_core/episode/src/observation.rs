@@ -166,7 +166,9 @@ pub fn all(actions: &ActionTable) -> Vec<Observed> {
     let mut rows = Vec::with_capacity(160);
     for (name, low, high) in DEFAULT_SIGNALS {
         if let Some(signal) = signals::find(name) {
-            rows.push(row(name, signal.unit, (low, high), Source::Signal(signal)).meaning(signal.description));
+            rows.push(
+                row(name, signal.unit, (low, high), Source::Signal(signal)).meaning(signal.description),
+            );
         }
     }
     rows.push(row("solar_gain_w", "W", (0.0, 1500.0), Source::Solar).meaning("solar heat into the cabin"));
@@ -192,7 +194,11 @@ pub fn all(actions: &ActionTable) -> Vec<Observed> {
         if DEFAULT_SIGNALS.iter().all(|(name, _, _)| *name != signal.name) {
             let known = HIDDEN_BOUNDS.iter().find(|(name, _, _)| *name == signal.name);
             let bounds = known.map_or_else(|| bounds_of_unit(signal.unit), |&(_, low, high)| (low, high));
-            rows.push(row(signal.name, signal.unit, bounds, Source::Signal(signal)).meaning(signal.description).hidden());
+            rows.push(
+                row(signal.name, signal.unit, bounds, Source::Signal(signal))
+                    .meaning(signal.description)
+                    .hidden(),
+            );
         }
     }
     rows
@@ -268,8 +274,10 @@ mod tests {
     use super::*;
 
     fn default_actions() -> ActionTable {
-        let names: Vec<String> =
-            ACTUATORS[..crate::action::DEFAULT_ROWS].iter().map(|actuator| actuator.name.to_owned()).collect();
+        let names: Vec<String> = ACTUATORS[..crate::action::DEFAULT_ROWS]
+            .iter()
+            .map(|actuator| actuator.name.to_owned())
+            .collect();
         ActionTable::new(&names).expect("built in")
     }
 

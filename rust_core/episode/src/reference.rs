@@ -53,7 +53,12 @@ impl ReferenceTrip {
     }
 
     /// Drives a second; returns the chemical energy drawn from the cells [J].
-    pub fn step(&mut self, plant: &Plant, conditions: &ReferenceConditions, disturbance: &Disturbance) -> f64 {
+    pub fn step(
+        &mut self,
+        plant: &Plant,
+        conditions: &ReferenceConditions,
+        disturbance: &Disturbance,
+    ) -> f64 {
         let vehicle = &plant.vehicle;
         let (start_m_s, end_m_s) = (disturbance.start_speed_m_s, disturbance.end_speed_m_s);
         let speed_m_s = 0.5 * (start_m_s + end_m_s);
@@ -74,7 +79,8 @@ impl ReferenceTrip {
         } else {
             powertrain.brake(-wheel_w, limits.charge_w + conditions.base_load_w)
         };
-        let step = circuit.draw((traction.electrical_power_w + conditions.base_load_w).min(limits.discharge_w));
+        let step =
+            circuit.draw((traction.electrical_power_w + conditions.base_load_w).min(limits.discharge_w));
         self.battery = step.state;
         step.chemical_power_w * CONTROL_PERIOD_S
     }
@@ -94,12 +100,8 @@ mod tests {
             let experiment = Experiment::load(scenario, None, &[]).expect("built in");
             let plant = &experiment.plant;
             let nodes = &plant.assembly.nodes;
-            let off = Demand {
-                blower_level: 0.0,
-                htc_flow_kg_s: 0.0,
-                chiller_flow_kg_s: 0.0,
-                ..Demand::default()
-            };
+            let off =
+                Demand { blower_level: 0.0, htc_flow_kg_s: 0.0, chiller_flow_kg_s: 0.0, ..Demand::default() };
             let command = plant.ranges.encode(&off);
             let mut state = experiment.start().state;
             let mut trip = ReferenceTrip::start(state.battery);
@@ -111,7 +113,10 @@ mod tests {
                 }
                 let expected = plant.step(&mut state, &command, &disturbance).flows[Flow::Chemical];
                 let found = trip.step(plant, &conditions, &disturbance);
-                assert!((found - expected).abs() < 1e-6, "{scenario}, second {step}: {found} and {expected} J");
+                assert!(
+                    (found - expected).abs() < 1e-6,
+                    "{scenario}, second {step}: {found} and {expected} J"
+                );
             }
         }
     }

@@ -78,7 +78,8 @@ impl AddAssign for Terms {
 pub type Parts = [f64; 4];
 
 /// Names of the parts of a reward.
-pub const PART_NAMES: [&str; 4] = ["reward_energy", "reward_discomfort", "reward_heat_left", "reward_penalties"];
+pub const PART_NAMES: [&str; 4] =
+    ["reward_energy", "reward_discomfort", "reward_heat_left", "reward_penalties"];
 
 impl Terms {
     /// Chemical energy beyond that of the reference trip [kWh].
@@ -171,7 +172,8 @@ impl Meter {
             occupied_h: if occupied { hours } else { 0.0 },
             heat_left_kwh: match end {
                 Some(EndReason::Arrived) => {
-                    let heating = experiment.scenario.climate.ambient_temperature_degc.0 < COMFORT_TEMPERATURE_DEGC;
+                    let heating =
+                        experiment.scenario.climate.ambient_temperature_degc.0 < COMFORT_TEMPERATURE_DEGC;
                     useful_heat_j(plant, &self.start_k, &after.temperatures_k, heating) / JOULE_PER_KWH
                 }
                 _ => 0.0,

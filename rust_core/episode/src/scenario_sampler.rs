@@ -122,7 +122,8 @@ impl Distribution {
         let garage_degc = random.between(ranges.garage_low_degc.0, ranges.garage_high_degc.0);
         let soak_degc = if from_garage { garage_degc } else { ambient_degc };
         let dark = random.chance(ranges.dark_share);
-        let season = ((ambient_degc - SUNLESS_DEGC) / (ranges.ambient_high_degc.0 - SUNLESS_DEGC)).clamp(0.0, 1.0);
+        let season =
+            ((ambient_degc - SUNLESS_DEGC) / (ranges.ambient_high_degc.0 - SUNLESS_DEGC)).clamp(0.0, 1.0);
         let sun_w = random.between(0.0, ranges.solar_high_w) * season;
         scenario.climate.ambient_temperature_degc = Celsius(ambient_degc);
         scenario.climate.solar_gain_w = if dark { 0.0 } else { sun_w };
@@ -173,7 +174,9 @@ mod tests {
     fn training_trips_differ_in_length_and_cover_cold_and_heat() {
         let trips = drawn("train-v0");
         let ambient = |trip: &Trip| trip.scenario.climate.ambient_temperature_degc.0;
-        assert!(trips.iter().any(|trip| ambient(trip) < -19.0) && trips.iter().any(|trip| ambient(trip) > 39.0));
+        assert!(
+            trips.iter().any(|trip| ambient(trip) < -19.0) && trips.iter().any(|trip| ambient(trip) > 39.0)
+        );
         let garage = Garage::default();
         let mut lengths: Vec<usize> = trips
             .iter()

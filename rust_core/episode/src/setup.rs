@@ -72,7 +72,9 @@ impl Setup {
     /// # Errors
     /// Anything in them that is not accepted.
     pub fn new(settings: &Settings) -> PlantResult<Self> {
-        let parse = |texts: &[String]| texts.iter().map(|text| Override::parse(text)).collect::<PlantResult<Vec<_>>>();
+        let parse = |texts: &[String]| {
+            texts.iter().map(|text| Override::parse(text)).collect::<PlantResult<Vec<_>>>()
+        };
         let out_of_range = |what: &str, value: String, allowed: String| PlantError::InvalidArgument {
             what: what.to_owned(),
             value,

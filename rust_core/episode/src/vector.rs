@@ -114,7 +114,12 @@ struct Job<'a> {
 impl Vector {
     /// Environments before their first reset.
     #[must_use]
-    pub fn new(episodes: Vec<Episode>, autoreset: Autoreset, step_limit: Option<u64>, threads: usize) -> Self {
+    pub fn new(
+        episodes: Vec<Episode>,
+        autoreset: Autoreset,
+        step_limit: Option<u64>,
+        threads: usize,
+    ) -> Self {
         let count = episodes.len();
         Self {
             episodes,
@@ -219,19 +224,21 @@ impl Vector {
             .zip(results.terminated.iter_mut())
             .zip(results.truncated.iter_mut())
             .enumerate()
-            .map(|(index, ((((((episode, elapsed), over), observation), reward), terminated), truncated))| Job {
-                index,
-                episode,
-                elapsed,
-                over,
-                observation,
-                reward,
-                terminated,
-                truncated,
-                parts: [0.0; PARTS],
-                finished: None,
-                reset: false,
-                error: None,
+            .map(|(index, ((((((episode, elapsed), over), observation), reward), terminated), truncated))| {
+                Job {
+                    index,
+                    episode,
+                    elapsed,
+                    over,
+                    observation,
+                    reward,
+                    terminated,
+                    truncated,
+                    parts: [0.0; PARTS],
+                    finished: None,
+                    reset: false,
+                    error: None,
+                }
             })
             .collect();
         let work = |job: &mut Job<'_>| job.work(actions, *autoreset, *step_limit);

@@ -5,6 +5,7 @@
 //! them can be repeated bit for bit.
 
 use crate::config::vehicle::VehicleParameters;
+use crate::error::{PlantError, PlantResult};
 use serde::{Deserialize, Serialize};
 
 /// Number of actuators.
@@ -193,6 +194,18 @@ impl Default for Demand {
     }
 }
 
+/// Row of an actuator.
+///
+/// # Errors
+/// There is none of that name.
+pub fn actuator(name: &str) -> PlantResult<usize> {
+    ACTUATORS.iter().position(|actuator| actuator.name == name).ok_or_else(|| PlantError::Unknown {
+        kind: "actuator",
+        name: name.to_owned(),
+        available: ACTUATORS.map(|actuator| actuator.name).join(", "),
+    })
+}
+
 /// Physical ranges of the actuators of one vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ActuatorRanges([(f64, f64); ACTUATOR_COUNT]);
@@ -209,7 +222,9 @@ impl ActuatorRanges {
             }
         }
         ranges[COMPRESSOR] = (compressor.minimum_power_w, compressor.maximum_power_w);
-        for (row, pump) in [(HTC_FLOW, &vehicle.htc.circuit.pump), (CHILLER_FLOW, &vehicle.chiller.circuit.pump)] {
+        for (row, pump) in
+            [(HTC_FLOW, &vehicle.htc.circuit.pump), (CHILLER_FLOW, &vehicle.chiller.circuit.pump)]
+        {
             ranges[row] = (pump.minimum_flow_kg_s, pump.maximum_flow_kg_s);
         }
         for range in &mut ranges[REQUESTS..REQUESTS + 6] {
@@ -278,6 +293,50 @@ impl ActuatorRanges {
         values[CHILLER_FLOW] = demand.chiller_flow_kg_s;
         values[CABIN_SET_POINT] = demand.cabin_set_point_k;
         Command(std::array::from_fn(|row| self.normalise(row, values[row])))
+    }
+
+    /// Sets one actuator of a command to a physical value.
+    ///
+    /// # Errors
+    /// No such actuator, or a value outside its range.
+    pub fn set(&self, command: &mut Command, name: &str, value: f64) -> PlantResult<()> {
+        let row = actuator(name)?;
+        let (low, high) = self.range(row);
+        let off = ACTUATORS[row].scale == Scale::OffThenLogarithmic && value == 0.0;
+        if !(off || (low..=high).contains(&value)) {
+            let zero = if ACTUATORS[row].scale == Scale::OffThenLogarithmic { "0 (off) or " } else { "" };
+            return Err(PlantError::InvalidArgument {
+                what: name.to_owned(),
+                value: value.to_string(),
+                allowed: format!("must be {zero}between {low} and {high} {}", ACTUATORS[row].unit),
+            });
+        }
+        command.0[row] = self.normalise(row, value);
+        Ok(())
+    }
+
+    /// Sets one actuator of a command to an option.
+    ///
+    /// # Errors
+    /// No such actuator or option, or the actuator has no options.
+    pub fn choose(&self, command: &mut Command, name: &str, option: &str) -> PlantResult<()> {
+        let row = actuator(name)?;
+        let options = match ACTUATORS[row].scale {
+            Scale::Choice(options) => options,
+            Scale::Linear | Scale::OffThenLogarithmic => &[],
+        };
+        let chosen =
+            options.iter().position(|known| *known == option).ok_or_else(|| PlantError::InvalidArgument {
+                what: name.to_owned(),
+                value: format!("`{option}`"),
+                allowed: if options.is_empty() {
+                    format!("must be a number of {}", ACTUATORS[row].unit)
+                } else {
+                    format!("must be one of {}", options.join(", "))
+                },
+            })?;
+        command.0[row] = self.normalise(row, chosen as f64);
+        Ok(())
     }
 
     /// The demand that a command stands for.

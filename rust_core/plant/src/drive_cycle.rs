@@ -28,7 +28,8 @@ impl DriveCycle {
     /// A row that is not two numbers, times that do not rise from 0, speeds out of range.
     pub fn from_csv(name: &str, text: &str) -> PlantResult<Self> {
         let mut points: Vec<(f64, f64)> = Vec::new();
-        let lines = text.lines().enumerate().filter(|(_, line)| !line.starts_with('#') && !line.trim().is_empty());
+        let lines =
+            text.lines().enumerate().filter(|(_, line)| !line.starts_with('#') && !line.trim().is_empty());
         for (number, line) in lines.skip(1) {
             let syntax = |what: String| PlantError::Syntax {
                 file: name.to_owned(),

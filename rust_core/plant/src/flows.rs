@@ -186,6 +186,10 @@ impl Flows {
     /// Electrical power besides traction, compressor and PTC [W].
     #[must_use]
     pub fn base_load_w(&self) -> f64 {
-        self[Flow::Auxiliary] + self[Flow::HtcPump] + self[Flow::ChillerPump] + self[Flow::Blower] + self[Flow::Fan]
+        self[Flow::Auxiliary]
+            + self[Flow::HtcPump]
+            + self[Flow::ChillerPump]
+            + self[Flow::Blower]
+            + self[Flow::Fan]
     }
 }

@@ -66,8 +66,8 @@ impl LedgerEntry {
 /// Balances a step.
 #[must_use]
 pub fn balance(flows: &Flows, stored: &StoredEnergyChange, step_s: f64) -> LedgerEntry {
-    let stores_w =
-        [stored.kinetic_j, stored.chemical_j, stored.polarisation_j, stored.heat_j].map(|joule| joule / step_s);
+    let stores_w = [stored.kinetic_j, stored.chemical_j, stored.polarisation_j, stored.heat_j]
+        .map(|joule| joule / step_s);
     let mut residual_w: f64 = stores_w.iter().sum();
     let mut scale_w = stores_w.iter().fold(SMALLEST_POWER_W, |largest, power| largest.max(power.abs()));
     for flow in INFLOWS {

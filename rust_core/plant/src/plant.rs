@@ -1,9 +1,7 @@
 //! The vehicle: one entry, [`Plant::step`], pure and deterministic.
 
 use crate::circuits::assembly::{Assembly, LinkConditions, RECOVERY_APPROACH_K};
-use crate::circuits::branches::{
-    self, BRANCH_COUNT, Branch, BranchFlows, BranchTemperatures,
-};
+use crate::circuits::branches::{self, BRANCH_COUNT, Branch, BranchFlows, BranchTemperatures};
 use crate::circuits::refrigeration_cycle::RefrigerationCycle;
 use crate::circuits::refrigeration_loop::{LoopBoundary, LoopResult, RefrigerationState, SupplyLimit};
 use crate::command::{ActuatorRanges, Command, Connection, Demand};
@@ -216,9 +214,13 @@ impl Plant {
                 mean.accumulate(&next.flows, share);
                 voltage_v += next.battery_voltage_v * share;
                 current_a += next.battery_current_a * share;
-                let worst =
-                    if next.ledger.relative() > record.ledger.relative() { next.ledger } else { record.ledger };
-                record = StepRecord { ledger: worst, loads_shed: next.loads_shed || record.loads_shed, ..next };
+                let worst = if next.ledger.relative() > record.ledger.relative() {
+                    next.ledger
+                } else {
+                    record.ledger
+                };
+                record =
+                    StepRecord { ledger: worst, loads_shed: next.loads_shed || record.loads_shed, ..next };
             }
             record.flows = mean;
             record.battery_voltage_v = voltage_v;
@@ -239,11 +241,15 @@ impl Plant {
 
     /// Temperatures that decide about connections.
     #[must_use]
-    pub fn branch_temperatures(&self, state: &State, recirculation: f64, ambient_k: f64) -> BranchTemperatures {
+    pub fn branch_temperatures(
+        &self,
+        state: &State,
+        recirculation: f64,
+        ambient_k: f64,
+    ) -> BranchTemperatures {
         let nodes = &self.assembly.nodes;
         let at = |node: crate::numerics::thermal_network::Node| state.temperatures_k[node.index()];
-        let htc_rate_w_k =
-            state.htc_pump.flow_kg_s * self.vehicle.htc.circuit.coolant_specific_heat_j_kg_k;
+        let htc_rate_w_k = state.htc_pump.flow_kg_s * self.vehicle.htc.circuit.coolant_specific_heat_j_kg_k;
         BranchTemperatures {
             htc_supply_k: at(nodes.htc_supply),
             condenser_outlet_k: at(nodes.htc_return) + state.condenser_heat_flow_w / htc_rate_w_k,
@@ -264,10 +270,15 @@ impl Plant {
         let temperatures = self.branch_temperatures(state, demand.recirculation, disturbance.ambient_k);
         state.connected = branches::grant(vehicle, &demand.connections, &temperatures, &state.connected);
         vehicle.htc.circuit.pump.follow(&mut state.htc_pump, demand.htc_flow_kg_s, CONTROL_PERIOD_S);
-        vehicle.chiller.circuit.pump.follow(&mut state.chiller_pump, demand.chiller_flow_kg_s, CONTROL_PERIOD_S);
+        vehicle.chiller.circuit.pump.follow(
+            &mut state.chiller_pump,
+            demand.chiller_flow_kg_s,
+            CONTROL_PERIOD_S,
+        );
         let flows = BranchFlows {
             htc_rate_w_k: state.htc_pump.flow_kg_s * vehicle.htc.circuit.coolant_specific_heat_j_kg_k,
-            chiller_rate_w_k: state.chiller_pump.flow_kg_s * vehicle.chiller.circuit.coolant_specific_heat_j_kg_k,
+            chiller_rate_w_k: state.chiller_pump.flow_kg_s
+                * vehicle.chiller.circuit.coolant_specific_heat_j_kg_k,
             ventilation: vehicle.cabin.ventilation(demand.blower_level, demand.recirculation),
             speed_m_s,
         };
@@ -472,12 +483,19 @@ impl Plant {
     }
 
     /// Draws all electrical power from the battery; what it cannot deliver goes unserved.
-    fn draw(&self, circuit: &CircuitStep<'_>, limits: &PowerLimits, loads_w: f64, flows: &mut Flows) -> BatteryStep {
+    fn draw(
+        &self,
+        circuit: &CircuitStep<'_>,
+        limits: &PowerLimits,
+        loads_w: f64,
+        flows: &mut Flows,
+    ) -> BatteryStep {
         let wanted_w = flows[Flow::Traction] + loads_w;
         let delivered_w = wanted_w.min(limits.discharge_w);
         let battery = circuit.draw(delivered_w);
         // Formed from what the circuit really delivered, so that round-off of its solution is not lost.
-        flows[Flow::Unserved] = if wanted_w > limits.discharge_w { wanted_w - battery.terminal_power_w } else { 0.0 };
+        flows[Flow::Unserved] =
+            if wanted_w > limits.discharge_w { wanted_w - battery.terminal_power_w } else { 0.0 };
         flows[Flow::Battery] = battery.terminal_power_w;
         flows[Flow::Chemical] = battery.chemical_power_w;
         flows[Flow::BatteryLoss] = battery.loss_w;
@@ -486,7 +504,8 @@ impl Plant {
 
     /// Fan of the front-end exchanger, on while that is connected [W].
     fn fan_power_w(&self, state: &State, speed_m_s: f64) -> f64 {
-        let connected = state.connected[Branch::AmbientHtc as usize] || state.connected[Branch::AmbientChiller as usize];
+        let connected =
+            state.connected[Branch::AmbientHtc as usize] || state.connected[Branch::AmbientChiller as usize];
         if connected { self.vehicle.ambient_exchanger.fan_power_w(speed_m_s) } else { 0.0 }
     }
 
@@ -513,7 +532,11 @@ impl Plant {
             recovery_w_k: if recovers { recovery_w_k } else { 0.0 },
             recovery_meets_chiller: lowest_k > disturbance.ambient_k,
             speed_m_s,
-            battery_ambient_w_k: self.vehicle.battery.plate.conductance_to_ambient_w_k(speed_m_s, &period.air),
+            battery_ambient_w_k: self
+                .vehicle
+                .battery
+                .plate
+                .conductance_to_ambient_w_k(speed_m_s, &period.air),
             ambient_k: disturbance.ambient_k,
         }
     }

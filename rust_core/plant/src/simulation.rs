@@ -97,7 +97,8 @@ impl Experiment {
             overrides.iter().filter_map(stripped).collect()
         };
         let known = ["vehicle.", "controller.", "scenario."];
-        if let Some(other) = overrides.iter().find(|change| !known.iter().any(|k| change.key.starts_with(k))) {
+        if let Some(other) = overrides.iter().find(|change| !known.iter().any(|k| change.key.starts_with(k)))
+        {
             return Err(PlantError::InvalidArgument {
                 what: "override key".into(),
                 value: format!("`{}`", other.key),
@@ -105,11 +106,8 @@ impl Experiment {
             });
         }
         let scenario: ScenarioParameters = library::load(Kind::Scenario, scenario, &part("scenario"))?;
-        let parameters: HpcuParameters = library::load(
-            Kind::Controller,
-            controller.unwrap_or(&scenario.controller),
-            &part("controller"),
-        )?;
+        let parameters: HpcuParameters =
+            library::load(Kind::Controller, controller.unwrap_or(&scenario.controller), &part("controller"))?;
         Ok(Self {
             plant: Arc::new(Plant::load(&scenario.vehicle, &part("vehicle"))?),
             cycle: Arc::new(DriveCycle::load(&scenario.cycle)?),
@@ -129,7 +127,13 @@ impl Experiment {
     #[must_use]
     pub fn start(&self) -> Run {
         let state = self.plant.parked(&self.scenario.initial);
-        Run { memory: self.hpcu.awake(&self.plant, &state), state, steps: 0, record: None, summary: Summary::default() }
+        Run {
+            memory: self.hpcu.awake(&self.plant, &state),
+            state,
+            steps: 0,
+            record: None,
+            summary: Summary::default(),
+        }
     }
 
     /// What the surroundings do during a step.
@@ -182,8 +186,12 @@ impl Experiment {
     /// Appends everything that can be seen of a run now, one value a signal.
     pub fn look(&self, run: &Run, row: &mut Vec<f64>) {
         let disturbance = self.disturbance(run.steps.saturating_sub(1));
-        let view =
-            View { plant: &self.plant, state: &run.state, record: run.record.as_ref(), disturbance: &disturbance };
+        let view = View {
+            plant: &self.plant,
+            state: &run.state,
+            record: run.record.as_ref(),
+            disturbance: &disturbance,
+        };
         row.extend(signals::all().map(|signal| signal.read(&view)));
     }
 

@@ -1,6 +1,7 @@
 //! Totals of a run.
 
 use crate::config::ZERO_CELSIUS_K;
+use crate::config::vehicle::VehicleParameters;
 use crate::flows::{FLOW_COUNT, Flow, Flows};
 use crate::plant::{CONTROL_PERIOD_S, Disturbance, Plant, StepRecord};
 use crate::state::State;
@@ -18,6 +19,18 @@ pub const COMFORT_BAND_K: f64 = 1.0;
 /// Largest overshoot that counts as rounding and not as a breach.
 const PRESSURE_TOLERANCE_BAR: f64 = 0.05;
 const TEMPERATURE_TOLERANCE_K: f64 = 0.1;
+
+/// Limits that a run of a vehicle is judged by, by name.
+#[must_use]
+pub fn limits(vehicle: &VehicleParameters) -> [(&'static str, f64); 5] {
+    [
+        ("cabin_lowest_degc", COMFORT_TEMPERATURE_DEGC - COMFORT_BAND_K),
+        ("cabin_highest_degc", COMFORT_TEMPERATURE_DEGC + COMFORT_BAND_K),
+        ("htc_supply_highest_degc", vehicle.htc.maximum_supply_degc.0),
+        ("chiller_supply_lowest_degc", vehicle.chiller.minimum_supply_degc.0),
+        ("condensing_pressure_highest_bar", vehicle.refrigeration.maximum_pressure_bar),
+    ]
+}
 
 /// Running totals.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -105,9 +118,12 @@ impl Summary {
     fn check_limits(&mut self, plant: &Plant, before: &State, after: &State, record: &StepRecord) {
         let nodes = &plant.assembly.nodes;
         let vehicle = &plant.vehicle;
-        let htc = (before.temperatures_k[nodes.htc_supply.index()], after.temperatures_k[nodes.htc_supply.index()]);
-        let chiller =
-            (before.temperatures_k[nodes.chiller_supply.index()], after.temperatures_k[nodes.chiller_supply.index()]);
+        let htc =
+            (before.temperatures_k[nodes.htc_supply.index()], after.temperatures_k[nodes.htc_supply.index()]);
+        let chiller = (
+            before.temperatures_k[nodes.chiller_supply.index()],
+            after.temperatures_k[nodes.chiller_supply.index()],
+        );
         self.highest_htc_supply_degc = self.highest_htc_supply_degc.max(htc.1 - ZERO_CELSIUS_K);
         self.lowest_chiller_supply_degc = self.lowest_chiller_supply_degc.min(chiller.1 - ZERO_CELSIUS_K);
         if !record.refrigeration.running() {
@@ -116,7 +132,8 @@ impl Summary {
         let pressure_bar = record.refrigeration.condensing_pressure_pa * 1e-5;
         self.highest_pressure_bar = self.highest_pressure_bar.max(pressure_bar);
         let too_high = pressure_bar > vehicle.refrigeration.maximum_pressure_bar + PRESSURE_TOLERANCE_BAR;
-        let too_hot = htc.1 > vehicle.htc.maximum_supply_degc.kelvin() + TEMPERATURE_TOLERANCE_K && htc.1 > htc.0;
+        let too_hot =
+            htc.1 > vehicle.htc.maximum_supply_degc.kelvin() + TEMPERATURE_TOLERANCE_K && htc.1 > htc.0;
         let too_cold = chiller.1 < vehicle.chiller.minimum_supply_degc.kelvin() - TEMPERATURE_TOLERANCE_K
             && chiller.1 < chiller.0;
         self.limit_breaches += f64::from(u8::from(too_high || too_hot || too_cold));
@@ -158,7 +175,11 @@ impl Summary {
         .map(|(name, value)| (name.to_owned(), value))
         .collect();
         for &flow in &Flow::ALL[..FLOW_COUNT] {
-            let stem = flow.column().trim_end_matches("_w").trim_end_matches("_power").trim_end_matches("_heat_flow");
+            let stem = flow
+                .column()
+                .trim_end_matches("_w")
+                .trim_end_matches("_power")
+                .trim_end_matches("_heat_flow");
             values.push((format!("{stem}_energy_kwh"), kwh(flow)));
         }
         values

@@ -6,7 +6,7 @@ use hp_plant::simulation::Experiment;
 
 fn error_with(assignment: &str) -> String {
     let overrides = [Override::parse(assignment).expect("assignment")];
-    Experiment::load("jeffs2019/case1-1", None, &overrides).err().expect("must be refused").to_string()
+    Experiment::load("jeffs2019/case1-1", None, &overrides).expect_err("must be refused").to_string()
 }
 
 #[test]
@@ -21,7 +21,10 @@ fn every_built_in_scenario_loads() {
 #[test]
 fn unknown_key_is_named_with_file_and_section() {
     let message = error_with("vehicle.body.mas_kg=1500");
-    assert!(message.contains("jeffs2019") && message.contains("body") && message.contains("mas_kg"), "{message}");
+    assert!(
+        message.contains("jeffs2019") && message.contains("body") && message.contains("mas_kg"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -54,15 +57,14 @@ fn override_without_a_known_prefix_or_section_is_refused() {
 
 #[test]
 fn unknown_scenario_lists_the_known_ones() {
-    let error = Experiment::load("jeffs2019/case9-9", None, &[]).err().expect("unknown").to_string();
+    let error = Experiment::load("jeffs2019/case9-9", None, &[]).expect_err("unknown").to_string();
     assert!(error.contains("case9-9") && error.contains("jeffs2019/case1-1"), "{error}");
 }
 
 #[test]
 fn connection_that_a_member_does_not_have_is_refused() {
-    let message = error_with(
-        r#"scenario.connection_schedule=[{ from_s = 0, member = "motor", connection = "htc" }]"#,
-    );
+    let message =
+        error_with(r#"scenario.connection_schedule=[{ from_s = 0, member = "motor", connection = "htc" }]"#);
     assert!(message.contains("connection_schedule[0].connection"), "{message}");
 }
 
@@ -89,7 +91,7 @@ fn broken_cycle_files_are_refused_with_the_line() {
         ("time_s,speed_km_h\n0,0\n1,900\n", "900"),
         ("time_s,speed_km_h\n0,0\n", "at least two rows"),
     ] {
-        let error = DriveCycle::from_csv("broken.csv", text).err().expect("must be refused").to_string();
+        let error = DriveCycle::from_csv("broken.csv", text).expect_err("must be refused").to_string();
         assert!(error.contains("broken.csv") && error.contains(part), "{error}");
     }
 }

@@ -67,19 +67,21 @@ fn random_scenario() -> impl Strategy<Value = RandomScenario> {
         prop::collection::vec(0.0..40.0_f64, segments + 1),
         prop::collection::vec(command, segments),
     )
-        .prop_map(|(temperatures, (state_of_charge_pct, solar_gain_w, occupants), speeds_m_s, commands)| {
-            RandomScenario {
-                ambient_degc: temperatures.0,
-                soak_degc: temperatures.1,
-                battery_degc: temperatures.2,
-                thermal_battery_degc: temperatures.3,
-                state_of_charge_pct,
-                solar_gain_w,
-                occupants: occupants.floor(),
-                speeds_m_s,
-                commands,
-            }
-        })
+        .prop_map(
+            |(temperatures, (state_of_charge_pct, solar_gain_w, occupants), speeds_m_s, commands)| {
+                RandomScenario {
+                    ambient_degc: temperatures.0,
+                    soak_degc: temperatures.1,
+                    battery_degc: temperatures.2,
+                    thermal_battery_degc: temperatures.3,
+                    state_of_charge_pct,
+                    solar_gain_w,
+                    occupants: occupants.floor(),
+                    speeds_m_s,
+                    commands,
+                }
+            },
+        )
 }
 
 /// Drives one random scenario, checks every step and returns the statuses it visited.
@@ -206,7 +208,8 @@ fn residual_with(tamper: impl FnMut(Stage, &mut Flows)) -> f64 {
 #[test]
 fn scaling_any_load_between_battery_and_its_heat_opens_the_ledger() {
     assert!(residual_with(|_, _| {}) < TOLERANCE);
-    for flow in [Flow::Compressor, Flow::Ptc, Flow::HtcPump, Flow::ChillerPump, Flow::Blower, Flow::Auxiliary] {
+    for flow in [Flow::Compressor, Flow::Ptc, Flow::HtcPump, Flow::ChillerPump, Flow::Blower, Flow::Auxiliary]
+    {
         let residual = residual_with(|stage, flows| match stage {
             Stage::Loads => flows[flow] *= 1.01,
             Stage::Heat => flows[flow] /= 1.01,

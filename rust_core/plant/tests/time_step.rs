@@ -14,8 +14,9 @@ struct Outcome {
 }
 
 fn run(case: &str, substeps: u32) -> Outcome {
-    let mut experiment = Experiment::load(&format!("jeffs2019/{case}"), None, &[]).expect("built-in scenario");
-    experiment = experiment.with_substeps(substeps);
+    let experiment = Experiment::load(&format!("jeffs2019/{case}"), None, &[])
+        .expect("built-in scenario")
+        .with_substeps(substeps);
     let nodes = experiment.plant.assembly.network.nodes();
     let mut run = experiment.start();
     let mut temperatures_k = Vec::new();

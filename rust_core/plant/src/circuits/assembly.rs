@@ -203,7 +203,8 @@ impl Assembly {
             flows[flow] = value;
         }
         flows[Flow::ThermalBatteryHtc] -= flows[Flow::Condenser] * Self::thermal_battery_share(now);
-        flows[Flow::ExhaustRecovery] = values[self.recovery_from_chiller] + values[self.recovery_from_chiller - 1];
+        flows[Flow::ExhaustRecovery] =
+            values[self.recovery_from_chiller] + values[self.recovery_from_chiller - 1];
     }
 }
 
@@ -277,7 +278,8 @@ fn branch_state(branch: Branch, now: &LinkConditions) -> LinkState {
 
 fn recovery_states(now: &LinkConditions) -> (LinkState, LinkState) {
     if now.recovery_meets_chiller {
-        let to_chiller = LinkState { offset_k: -RECOVERY_APPROACH_K, ..LinkState::conductance(now.recovery_w_k) };
+        let to_chiller =
+            LinkState { offset_k: -RECOVERY_APPROACH_K, ..LinkState::conductance(now.recovery_w_k) };
         (LinkState::OPEN, to_chiller)
     } else {
         (LinkState::to_fixed(now.recovery_w_k, now.ambient_k), LinkState::OPEN)

@@ -213,12 +213,17 @@ pub fn largest_conductances_w_k(
         let valve = circuit.valve_closed
             + demand.valves[member as usize] * (circuit.valve_open - circuit.valve_closed);
         // The thermal battery is in series in the HTC: it sees the whole flow.
-        let flow_share =
-            if branch == Branch::ThermalBatteryHtc { 1.0 } else { share(&circuit.branch_shares, member) / open };
+        let flow_share = if branch == Branch::ThermalBatteryHtc {
+            1.0
+        } else {
+            share(&circuit.branch_shares, member) / open
+        };
         let coolant_w_k = rate_w_k * flow_share * valve;
         match branch {
             Branch::CabinHtc => vehicle.cabin.heater_core_conductance_w_k(coolant_w_k, &flows.ventilation),
-            Branch::CabinChiller => vehicle.cabin.cooling_core_conductance_w_k(coolant_w_k, &flows.ventilation),
+            Branch::CabinChiller => {
+                vehicle.cabin.cooling_core_conductance_w_k(coolant_w_k, &flows.ventilation)
+            }
             Branch::BatteryHtc | Branch::BatteryChiller => {
                 inlet_conductance_w_k(coolant_w_k, vehicle.battery.coolant_ua_w_k)
             }
@@ -229,7 +234,9 @@ pub fn largest_conductances_w_k(
                 inlet_conductance_w_k(coolant_w_k, vehicle.ambient_exchanger.source_ua_w_k(flows.speed_m_s))
             }
             Branch::MotorChiller => inlet_conductance_w_k(coolant_w_k, vehicle.motor.coolant_ua_w_k),
-            Branch::TransmissionChiller => inlet_conductance_w_k(coolant_w_k, vehicle.transmission.coolant_ua_w_k),
+            Branch::TransmissionChiller => {
+                inlet_conductance_w_k(coolant_w_k, vehicle.transmission.coolant_ua_w_k)
+            }
             Branch::ThermalBatteryHtc | Branch::ThermalBatteryChiller => {
                 inlet_conductance_w_k(coolant_w_k, vehicle.thermal_battery.coolant_ua_w_k)
             }

@@ -287,8 +287,9 @@ impl CircuitStep<'_> {
         let mean_polarisation_v = steady_v + (self.polarisation_v - steady_v) * self.mean_decay;
         let end_polarisation_v = steady_v + (self.polarisation_v - steady_v) * self.decay;
         let polarisation = end_polarisation_v * self.root_capacitance;
-        let stored_w =
-            0.5 * (polarisation * polarisation - self.state.polarisation * self.state.polarisation) / self.step_s;
+        let stored_w = 0.5
+            * (polarisation * polarisation - self.state.polarisation * self.state.polarisation)
+            / self.step_s;
         let voltage_v = mean_open_circuit_v - self.series_ohm * current_a - mean_polarisation_v;
         // The second term equals the mean of v1^2 / R1 over the step (exact solution of the RC pair).
         let loss_w = self.series_ohm * current_a * current_a + (current_a * mean_polarisation_v - stored_w);

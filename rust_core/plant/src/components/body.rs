@@ -50,7 +50,12 @@ mod tests {
     use proptest::prelude::*;
 
     fn body() -> BodyParameters {
-        BodyParameters { mass_kg: 1500.0, rotating_mass_share: 0.04, drag_area_m2: 0.7, rolling_resistance_coefficient: 0.01 }
+        BodyParameters {
+            mass_kg: 1500.0,
+            rotating_mass_share: 0.04,
+            drag_area_m2: 0.7,
+            rolling_resistance_coefficient: 0.01,
+        }
     }
 
     proptest! {

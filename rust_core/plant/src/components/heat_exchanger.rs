@@ -15,7 +15,11 @@ pub fn inlet_conductance_w_k(capacity_rate_w_k: f64, ua_w_k: f64) -> f64 {
 /// Conductance between the inlet temperatures of two flows in counterflow [W/K].
 #[must_use]
 #[inline]
-pub fn counterflow_conductance_w_k(first_capacity_rate_w_k: f64, second_capacity_rate_w_k: f64, ua_w_k: f64) -> f64 {
+pub fn counterflow_conductance_w_k(
+    first_capacity_rate_w_k: f64,
+    second_capacity_rate_w_k: f64,
+    ua_w_k: f64,
+) -> f64 {
     let small = first_capacity_rate_w_k.min(second_capacity_rate_w_k);
     let large = first_capacity_rate_w_k.max(second_capacity_rate_w_k);
     if small <= 0.0 {

@@ -10,7 +10,9 @@ impl MotorParameters {
     #[must_use]
     pub fn loss_w(&self, speed_m_s: f64, shaft_power_w: f64) -> f64 {
         let load = shaft_power_w.abs();
-        self.no_load_loss_w(speed_m_s) + self.proportional_loss * load + self.quadratic_loss_per_w * load * load
+        self.no_load_loss_w(speed_m_s)
+            + self.proportional_loss * load
+            + self.quadratic_loss_per_w * load * load
     }
 
     /// Shaft power into the machine that yields a recovered electrical power [W].

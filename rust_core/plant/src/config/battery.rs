@@ -111,14 +111,22 @@ fn check_axis(key: &str, axis: &[f64], low: f64, high: f64) -> Result<(), Violat
         check_range(&format!("{key}[{i}]"), value, low, high)?;
     }
     match axis.windows(2).position(|pair| pair[1] <= pair[0]) {
-        Some(i) => Err(Violation::new(format!("{key}[{}]", i + 1), axis[i + 1], "must be larger than the value before it")),
+        Some(i) => Err(Violation::new(
+            format!("{key}[{}]", i + 1),
+            axis[i + 1],
+            "must be larger than the value before it",
+        )),
         None => Ok(()),
     }
 }
 
 fn check_values(key: &str, values: &[f64], length: usize, low: f64, high: f64) -> Result<(), Violation> {
     if values.len() != length {
-        return Err(Violation::new(key, format!("{} values", values.len()), format!("must hold {length} values, one for each point of its axis")));
+        return Err(Violation::new(
+            key,
+            format!("{} values", values.len()),
+            format!("must hold {length} values, one for each point of its axis"),
+        ));
     }
     for (i, &value) in values.iter().enumerate() {
         check_range(&format!("{key}[{i}]"), value, low, high)?;
@@ -130,7 +138,11 @@ impl Validate for OpenCircuitVoltageTable {
     fn validate(&self) -> Result<(), Violation> {
         check_axis("state_of_charge", &self.state_of_charge, 0.0, 1.0)?;
         if self.state_of_charge[0] != 0.0 || self.state_of_charge[self.state_of_charge.len() - 1] != 1.0 {
-            return Err(Violation::new("state_of_charge", format!("{:?}", self.state_of_charge), "must run from 0 to 1"));
+            return Err(Violation::new(
+                "state_of_charge",
+                format!("{:?}", self.state_of_charge),
+                "must run from 0 to 1",
+            ));
         }
         check_values("voltage_v", &self.voltage_v, self.state_of_charge.len(), 1.0, 5.0)?;
         check_axis("voltage_v", &self.voltage_v, 1.0, 5.0)
@@ -148,7 +160,11 @@ impl Validate for CircuitTable {
         ];
         for (key, table, low, high) in tables {
             if table.len() != self.temperature_degc.len() {
-                return Err(Violation::new(key, format!("{} rows", table.len()), format!("must hold {} rows, one for each temperature", self.temperature_degc.len())));
+                return Err(Violation::new(
+                    key,
+                    format!("{} rows", table.len()),
+                    format!("must hold {} rows, one for each temperature", self.temperature_degc.len()),
+                ));
             }
             for (i, row) in table.iter().enumerate() {
                 check_values(&format!("{key}[{i}]"), row, self.state_of_charge.len(), low, high)?;

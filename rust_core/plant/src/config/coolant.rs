@@ -1,7 +1,7 @@
 //! Parameters of the coolant loops and of what is connected to them.
 
-use super::{Validate, Violation, check_range};
 use super::Celsius;
+use super::{Validate, Violation, check_range};
 use crate::parameters;
 use serde::{Deserialize, Serialize};
 

@@ -74,7 +74,9 @@ pub fn names(kind: Kind) -> Vec<&'static str> {
     let (folder, ending) = kind.place();
     built_in::FILES
         .iter()
-        .filter_map(|(name, _)| name.strip_prefix(folder)?.strip_prefix('/')?.strip_suffix(ending)?.strip_suffix('.'))
+        .filter_map(|(name, _)| {
+            name.strip_prefix(folder)?.strip_prefix('/')?.strip_suffix(ending)?.strip_suffix('.')
+        })
         .collect()
 }
 
@@ -133,7 +135,11 @@ fn parse_value(text: &str) -> Value {
 ///
 /// # Errors
 /// Anything wrong, with file and key.
-pub fn load<T: DeserializeOwned + Validate>(kind: Kind, name: &str, overrides: &[Override]) -> PlantResult<T> {
+pub fn load<T: DeserializeOwned + Validate>(
+    kind: Kind,
+    name: &str,
+    overrides: &[Override],
+) -> PlantResult<T> {
     let mut table = merged(kind, name, 0)?;
     for change in overrides {
         set(&mut table, &change.key, change.value.clone())
@@ -142,7 +148,8 @@ pub fn load<T: DeserializeOwned + Validate>(kind: Kind, name: &str, overrides: &
     let parameters: T = serde_path_to_error::deserialize(Value::Table(table)).map_err(|error| {
         let path = error.path().to_string();
         let inner = error.into_inner().to_string();
-        let message = if path == "." { inner.trim().to_owned() } else { format!("`{path}`: {}", inner.trim()) };
+        let message =
+            if path == "." { inner.trim().to_owned() } else { format!("`{path}`: {}", inner.trim()) };
         PlantError::Syntax { file: name.to_owned(), message }
     })?;
     parameters.validate().map_err(|violation| violation.in_file(name))?;
@@ -195,7 +202,8 @@ fn set(table: &mut Table, key: &str, new: Value) -> Result<(), String> {
     for index in indices {
         let number: usize =
             index.strip_suffix(']').and_then(|digits| digits.parse().ok()).ok_or_else(|| missing(last))?;
-        target = target.as_array_mut().and_then(|array| array.get_mut(number)).ok_or_else(|| missing(last))?;
+        target =
+            target.as_array_mut().and_then(|array| array.get_mut(number)).ok_or_else(|| missing(last))?;
     }
     *target = new;
     Ok(())

@@ -175,7 +175,14 @@ impl HeatDemandParameters {
     /// Constants, by member.
     #[must_use]
     pub fn constants_w(&self) -> [f64; 6] {
-        [self.battery_w, self.motor_w, self.transmission_w, self.ambient_w, self.thermal_battery_w, self.cabin_w]
+        [
+            self.battery_w,
+            self.motor_w,
+            self.transmission_w,
+            self.ambient_w,
+            self.thermal_battery_w,
+            self.cabin_w,
+        ]
     }
 }
 
@@ -200,7 +207,11 @@ fn check_order(key: &str, times: impl Iterator<Item = f64>) -> Result<(), Violat
         let key = format!("{key}[{i}].from_s");
         check_range(&key, time, 0.0, 1e7)?;
         if time < last {
-            return Err(Violation::new(key, time, format!("must not be before the change above it ({last} s)")));
+            return Err(Violation::new(
+                key,
+                time,
+                format!("must not be before the change above it ({last} s)"),
+            ));
         }
         last = time;
     }

@@ -32,7 +32,12 @@ impl Violation {
     /// The error for a file.
     #[must_use]
     pub fn in_file(self, file: &str) -> PlantError {
-        PlantError::OutOfRange { file: file.to_owned(), key: self.key, value: self.value, allowed: self.allowed }
+        PlantError::OutOfRange {
+            file: file.to_owned(),
+            key: self.key,
+            value: self.value,
+            allowed: self.allowed,
+        }
     }
 }
 

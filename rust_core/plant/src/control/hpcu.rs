@@ -88,7 +88,13 @@ impl Hpcu {
     }
 
     /// Demand for the next control period, given the heat flows requested by the heatDemandCommander [W].
-    pub fn demand(&self, plant: &Plant, state: &State, memory: &mut HpcuState, requests_w: &[f64; 6]) -> Demand {
+    pub fn demand(
+        &self,
+        plant: &Plant,
+        state: &State,
+        memory: &mut HpcuState,
+        requests_w: &[f64; 6],
+    ) -> Demand {
         let mode = self.cabin_mode(plant, state, memory);
         let mut demand = Demand {
             connections: self.connections(plant, state, memory, mode),
@@ -110,8 +116,8 @@ impl Hpcu {
     }
 
     fn cabin_mode(&self, plant: &Plant, state: &State, memory: &mut HpcuState) -> CabinMode {
-        let above_k = temperature_k(state, plant.assembly.nodes.cabin)
-            - self.parameters.cabin_set_point_degc.kelvin();
+        let above_k =
+            temperature_k(state, plant.assembly.nodes.cabin) - self.parameters.cabin_set_point_degc.kelvin();
         memory.cabin_mode = match self.strategy.climate_control {
             ClimateControl::Heat => CabinMode::Heating,
             ClimateControl::Cool => CabinMode::Cooling,
@@ -122,7 +128,13 @@ impl Hpcu {
         memory.cabin_mode
     }
 
-    fn connections(&self, plant: &Plant, state: &State, memory: &mut HpcuState, mode: CabinMode) -> [Connection; 6] {
+    fn connections(
+        &self,
+        plant: &Plant,
+        state: &State,
+        memory: &mut HpcuState,
+        mode: CabinMode,
+    ) -> [Connection; 6] {
         let heating = mode == CabinMode::Heating;
         let source = |selected: bool| {
             if selected && heating { Connection::Chiller } else { Connection::Isolated }
@@ -148,8 +160,10 @@ impl Hpcu {
             BatteryTreatment::Isolate => (false, false),
             BatteryTreatment::Source => (false, battery_k > limits.source_down_to_degc.kelvin()),
             BatteryTreatment::Heat => {
-                let resume_k = heat_up_to_k - if memory.heats_battery { 0.0 } else { limits.heating_hysteresis_k };
-                let release_k = cool_above_k - if memory.cools_battery { limits.cooling_hysteresis_k } else { 0.0 };
+                let resume_k =
+                    heat_up_to_k - if memory.heats_battery { 0.0 } else { limits.heating_hysteresis_k };
+                let release_k =
+                    cool_above_k - if memory.cools_battery { limits.cooling_hysteresis_k } else { 0.0 };
                 (battery_k < resume_k, battery_k > release_k)
             }
         };
@@ -182,7 +196,14 @@ impl Hpcu {
     }
 
     /// Lets requests fade near their targets, so that neither cabin nor battery overshoots.
-    fn trim_requests(&self, plant: &Plant, state: &State, memory: &HpcuState, mode: CabinMode, demand: &mut Demand) {
+    fn trim_requests(
+        &self,
+        plant: &Plant,
+        state: &State,
+        memory: &HpcuState,
+        mode: CabinMode,
+        demand: &mut Demand,
+    ) {
         let nodes = &plant.assembly.nodes;
         let beyond_k = self.cabin_error_k(plant, state, mode) + self.parameters.cabin_request_band_k;
         demand.requests_w[Member::Cabin as usize] *=
@@ -200,8 +221,8 @@ impl Hpcu {
 
     /// Deviation that calls for compressor power [K].
     fn cabin_error_k(&self, plant: &Plant, state: &State, mode: CabinMode) -> f64 {
-        let below_k = self.parameters.cabin_set_point_degc.kelvin()
-            - temperature_k(state, plant.assembly.nodes.cabin);
+        let below_k =
+            self.parameters.cabin_set_point_degc.kelvin() - temperature_k(state, plant.assembly.nodes.cabin);
         match mode {
             CabinMode::Heating => below_k,
             CabinMode::Cooling => -below_k,
@@ -209,7 +230,13 @@ impl Hpcu {
     }
 
     /// `min(max(PID battery, PID cabin), PID chiller, PID HTC)`.
-    fn compressor_power_w(&self, plant: &Plant, state: &State, memory: &mut HpcuState, mode: CabinMode) -> f64 {
+    fn compressor_power_w(
+        &self,
+        plant: &Plant,
+        state: &State,
+        memory: &mut HpcuState,
+        mode: CabinMode,
+    ) -> f64 {
         if !self.strategy.heat_pump {
             return 0.0;
         }
@@ -248,13 +275,14 @@ impl Hpcu {
         let battery_k = temperature_k(state, plant.assembly.nodes.battery);
         let limits = &self.parameters.battery;
         if memory.heats_battery {
-            return state.connected[Branch::BatteryHtc as usize].then(|| limits.heat_up_to_degc.kelvin() - battery_k);
+            return state.connected[Branch::BatteryHtc as usize]
+                .then(|| limits.heat_up_to_degc.kelvin() - battery_k);
         }
         let target_k = match self.strategy.battery {
             BatteryTreatment::Source => limits.source_down_to_degc.kelvin(),
             _ => limits.cool_above_degc.kelvin(),
         };
-        memory.cools_battery.then(|| battery_k - target_k)
+        memory.cools_battery.then_some(battery_k - target_k)
     }
 }
 

@@ -83,12 +83,10 @@ impl<const N: usize> BilinearTable<N> {
     /// Sizes that do not match; configuration checks exclude that.
     #[must_use]
     pub fn new(rows: &[f64], columns: &[f64], functions: [&[Vec<f64>]; N]) -> Self {
-        let mut values = Vec::with_capacity(rows.len() * columns.len());
-        for i in 0..rows.len() {
-            for j in 0..columns.len() {
-                values.push(std::array::from_fn(|k| functions[k][i][j]));
-            }
-        }
+        let width = columns.len();
+        let values = (0..rows.len() * width)
+            .map(|corner| functions.map(|table| table[corner / width][corner % width]))
+            .collect();
         Self { rows: rows.to_vec(), columns: columns.to_vec(), values }
     }
 
