@@ -2,6 +2,7 @@
 
 from hp_gym._core import ConfigurationError, Experiment, Run, __version__, names
 from hp_gym.command import encode
+from hp_gym.registration import register_envs
 from hp_gym.signals import observe
 from hp_gym.simulation import Controller, simulate
 from hp_gym.trajectory import Trajectory
@@ -16,5 +17,8 @@ __all__ = [
     "encode",
     "names",
     "observe",
+    "register_envs",
     "simulate",
 ]
+
+register_envs()

@@ -1,7 +1,7 @@
 //! One environment.
 
 use crate::actions::{self, Checked};
-use crate::errors::{gymnasium_error, to_python};
+use crate::errors::{ConfigurationError, gymnasium_error, to_python};
 use hp_episode::action;
 use hp_episode::episode;
 use hp_episode::reward::{PART_NAMES, Parts, RewardParameters, Terms};
@@ -30,6 +30,24 @@ pub fn source(setup: &Setup, scenario: Option<&str>, distribution: Option<&str>)
         (None, None) => None,
     };
     source.transpose().map_err(to_python)
+}
+
+/// Present values of all signals.
+pub fn looked(episode: &episode::Episode) -> Vec<f64> {
+    let (Some((_, experiment)), Some(run)) = (episode.trip(), episode.run()) else { return Vec::new() };
+    let disturbance = experiment.disturbance(run.steps.saturating_sub(1));
+    let view = View {
+        plant: &experiment.plant,
+        state: &run.state,
+        record: run.record.as_ref(),
+        disturbance: &disturbance,
+    };
+    signals::all().map(|signal| signal.read(&view)).collect()
+}
+
+/// Speed at every full second of a trip.
+pub fn speeds_m_s(episode: &episode::Episode) -> Vec<f64> {
+    episode.trip().map_or_else(Vec::new, |(_, experiment)| experiment.cycle.speeds_m_s().to_vec())
 }
 
 /// What is told of a trip when it begins.
@@ -207,18 +225,7 @@ impl Episode {
     /// Present values of all signals.
     fn look<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.require_begun(py)?;
-        let mut values = Vec::new();
-        if let (Some((_, experiment)), Some(run)) = (self.inner.trip(), self.inner.run()) {
-            let disturbance = experiment.disturbance(run.steps.saturating_sub(1));
-            let view = View {
-                plant: &experiment.plant,
-                state: &run.state,
-                record: run.record.as_ref(),
-                disturbance: &disturbance,
-            };
-            values.extend(signals::all().map(|signal| signal.read(&view)));
-        }
-        Ok(values.into_pyarray(py))
+        Ok(looked(&self.inner).into_pyarray(py))
     }
 
     /// The command that was driven last, all actuators.
@@ -230,9 +237,7 @@ impl Episode {
     /// Speed at every full second of the trip.
     fn speeds_m_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.require_begun(py)?;
-        let speeds =
-            self.inner.trip().map_or_else(Vec::new, |(_, experiment)| experiment.cycle.speeds_m_s().to_vec());
-        Ok(speeds.into_pyarray(py))
+        Ok(speeds_m_s(&self.inner).into_pyarray(py))
     }
 
     /// KPIs of the trip so far.

@@ -1,7 +1,7 @@
 //! Many environments that step together, the interpreter's lock released.
 
 use crate::actions::{self, Checked};
-use crate::episode::{as_action, kpis, parts_info, setup, source, trip_info};
+use crate::episode::{as_action, kpis, looked, parts_info, setup, source, speeds_m_s, trip_info};
 use crate::errors::{gymnasium_error, to_python};
 use hp_episode::episode::Episode;
 use hp_episode::setup::{Setup, Source};
@@ -228,6 +228,20 @@ impl Vector {
         let command = self.inner.episodes_mut()[index].rule_based_command();
         let command = command.ok_or_else(|| gymnasium_error(py, "ResetNeeded", "call reset() first"))?;
         Ok(as_action(py, &self.setup, &command))
+    }
+
+    /// Present values of all signals of one environment.
+    fn look<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        self.require_ready(py)?;
+        self.check_index(index)?;
+        Ok(looked(&self.inner.episodes()[index]).into_pyarray(py))
+    }
+
+    /// Speed at every full second of the trip of one environment.
+    fn speeds_m_s<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        self.require_ready(py)?;
+        self.check_index(index)?;
+        Ok(speeds_m_s(&self.inner.episodes()[index]).into_pyarray(py))
     }
 
     /// KPIs of the present trip of one environment.
