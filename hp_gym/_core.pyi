@@ -1,19 +1,23 @@
 """The compiled core of `hp_gym` (rust_core/bindings)."""
 
 from collections.abc import Sequence
-from typing import Final, final
+from typing import Any, Final, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
     "ConfigurationError",
+    "Episode",
     "Experiment",
     "Run",
+    "Vector",
     "__version__",
     "actuators",
     "config_text",
     "names",
+    "observation_table",
+    "reward_parts",
     "signals",
     "totals",
 ]
@@ -73,7 +77,114 @@ class Experiment:
         """Command of named actuators in physical units; the others have their defaults."""
     def simulate(self) -> tuple[NDArray[np.float64], dict[str, float], str]:
         """Runs with the rule-based controller: a row of signals a second, totals, reason of the end."""
-    def totals(self) -> tuple[dict[str, float], str]:
+    _Info: TypeAlias = dict[str, Any]
+_Floats: TypeAlias = NDArray[np.float32]
+_Bools: TypeAlias = NDArray[np.bool_]
+
+@final
+class Episode:
+    """One environment."""
+
+    def __new__(
+        cls, settings: str, scenario: str | None = None, distribution: str | None = None
+    ) -> Episode:
+        """Makes an environment of settings in JSON; trips come from a scenario or else a distribution."""
+    @property
+    def closed(self) -> bool:
+        """Whether it was closed."""
+    def option_counts(self) -> list[int]:
+        """Number of options of each action; empty in continuous mode."""
+    def observation_rows(self) -> list[tuple[str, str, float, float, str]]:
+        """Name, unit, low, high and meaning of every row of an observation."""
+    def seed(self, seed: int) -> None:
+        """Starts the random numbers anew."""
+    def reset(self, scenario: str | None = None, distribution: str | None = None) -> tuple[_Floats, _Info]:
+        """Begins a trip; a scenario or distribution holds for this one only."""
+    def step(self, action: NDArray[Any]) -> tuple[_Floats, float, bool, bool, _Info]:
+        """Drives on for one control interval."""
+    def action_masks(self) -> _Bools:
+        """Options that would be granted in the coming second."""
+    def rule_based_action(self) -> NDArray[Any]:
+        """What the rule-based controller would do next."""
+    def look(self) -> NDArray[np.float64]:
+        """Present values of all signals."""
+    def asked(self) -> _Floats:
+        """The command that was driven last, all actuators."""
+    def speeds_m_s(self) -> NDArray[np.float64]:
+        """Speed at every full second of the trip."""
+    def kpis(self) -> dict[str, float]:
+        """KPIs of the trip so far."""
+    def summary(self) -> dict[str, float]:
+        """Totals of the trip so far, as `simulate` gives them."""
+    def get_state(self) -> bytes:
+        """Everything that the future depends on."""
+    def set_state(self, state: bytes) -> None:
+        """Goes on from a state."""
+    def close(self) -> None:
+        """Ends it."""
+
+@final
+class Vector:
+    """Many environments."""
+
+    def __new__(
+        cls,
+        settings: str,
+        scenarios: Sequence[str | None],
+        distributions: Sequence[str | None],
+        autoreset: str,
+        step_limit: int | None,
+        threads: int,
+    ) -> Vector:
+        """Makes as many environments as there are scenarios and distributions."""
+    def reset(
+        self,
+        indices: Sequence[int],
+        seeds: Sequence[int | None],
+        scenarios: Sequence[str | None],
+        distributions: Sequence[str | None],
+    ) -> list[tuple[int, _Info]]:
+        """Resets environments, each with its seed and, just this once, its scenario or distribution."""
+    def observe(self, indices: Sequence[int]) -> _Floats:
+        """Observations of environments, one row each."""
+    def step(
+        self, action: NDArray[Any]
+    ) -> tuple[
+        _Floats,
+        NDArray[np.float64],
+        _Bools,
+        _Bools,
+        NDArray[np.float64],
+        list[tuple[int, _Info, _Floats | None]],
+        list[tuple[int, _Info]],
+    ]:
+        """Drives all environments on for one control interval."""
+    def action_masks(self) -> _Bools:
+        """Options that would be granted in the coming second, one row an environment."""
+    def rule_based_action(self, index: int) -> NDArray[Any]:
+        """What the rule-based controller of an environment would do next."""
+    def look(self, index: int) -> NDArray[np.float64]:
+        """Present values of all signals of an environment."""
+    def speeds_m_s(self, index: int) -> NDArray[np.float64]:
+        """Speed at every full second of the trip of an environment."""
+    def kpis(self, index: int) -> dict[str, float]:
+        """KPIs of the present trip of an environment."""
+    def fork(self, indices: Sequence[int]) -> None:
+        """Lets every environment go on from where another one is now."""
+    def get_state(self, index: int) -> bytes:
+        """Everything that the future of an environment depends on."""
+    def set_states(self, indices: Sequence[int], states: Sequence[bytes]) -> None:
+        """Restores environments, all or none."""
+    def close(self) -> None:
+        """Ends them."""
+
+def observation_table() -> list[tuple[str, str, float, float, str, bool]]:
+    """Name, unit, low, high, meaning and default of every row that can be observed."""
+
+def reward_parts() -> list[str]:
+    """Names of the parts of a reward."""
+
+def totals(self) -> tuple[dict[str, float], str]:
         """Runs with the rule-based controller: totals and reason of the end only."""
     def start(self) -> Run:
         """The vehicle before the first step."""

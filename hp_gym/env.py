@@ -228,6 +228,7 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
         if trips == (None, None):
             trips = (None, settings.DEFAULT_DISTRIBUTION)
         self._episode = _core.Episode(chosen.to_json(), *trips)
+        self.action_names = chosen.action_names
         self._seeded = False
         self._render_size = render_size
         self._renderer: Renderer | None = None

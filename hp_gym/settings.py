@@ -48,6 +48,11 @@ class Settings:
     sensor_noise: float = 0.0
     overrides: Overrides | None = None
 
+    @property
+    def action_names(self) -> tuple[str, ...]:
+        """Actuators that the agent controls, in the order of an action."""
+        return tuple(_actions(self.actions))
+
     def to_json(self) -> str:
         """Returns the settings as the core reads them.
 
@@ -58,7 +63,7 @@ class Settings:
         reward, changes = _reward(self.reward)
         settings = {
             "continuous": self.continuous,
-            "actions": _actions(self.actions),
+            "actions": list(self.action_names),
             "observations": _names("observations", self.observations),
             "reward": reward,
             "reward_overrides": changes,
@@ -141,7 +146,7 @@ def action_space(episode: _core.Episode, settings: Settings) -> spaces.Space[Any
     counts = episode.option_counts()
     if counts:
         return spaces.MultiDiscrete(np.array(counts, dtype=np.int64))
-    length = len(_actions(settings.actions))
+    length = len(settings.action_names)
     return spaces.Box(-1.0, 1.0, (length,), np.float32)
 
 
