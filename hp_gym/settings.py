@@ -1,6 +1,7 @@
 """What an environment is made with, checked once for the single and the vector environment."""
 
 import json
+import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -60,6 +61,9 @@ class Settings:
             ConfigurationError: There is no such set of actions.
             TypeError: A setting is of a type that cannot be read.
         """
+        if not math.isfinite(self.sensor_noise):
+            message = f"sensor_noise is {self.sensor_noise}, but must be between 0 and 1"
+            raise _core.ConfigurationError(message)
         reward, changes = _reward(self.reward)
         settings = {
             "continuous": self.continuous,

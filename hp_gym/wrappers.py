@@ -77,7 +77,7 @@ class FlatActions(gym.ActionWrapper[NDArray[np.float32], np.int64, NDArray[np.in
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Marks the modes of which the plant would grant every connection."""
-        masks: NDArray[np.bool_] = self.get_wrapper_attr("action_masks")()
+        masks: NDArray[np.bool_] = self.env.get_wrapper_attr("action_masks")()
         granted: NDArray[np.bool_] = masks[self._starts + self._actions].all(axis=1)
         return granted
 

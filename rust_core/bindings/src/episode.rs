@@ -17,8 +17,11 @@ use std::sync::Arc;
 
 /// Settings from JSON, made ready.
 pub fn setup(settings: &str) -> PyResult<Arc<Setup>> {
-    let settings: Settings = serde_json::from_str(settings)
-        .map_err(|error| PyValueError::new_err(format!("settings: {error}")))?;
+    let read = &mut serde_json::Deserializer::from_str(settings);
+    let settings: Settings = serde_path_to_error::deserialize(read).map_err(|error| {
+        let key = error.path().to_string();
+        ConfigurationError::new_err(format!("setting `{key}`: {}", error.into_inner()))
+    })?;
     Ok(Arc::new(Setup::new(&settings).map_err(to_python)?))
 }
 
