@@ -77,7 +77,28 @@ class Experiment:
         """Command of named actuators in physical units; the others have their defaults."""
     def simulate(self) -> tuple[NDArray[np.float64], dict[str, float], str]:
         """Runs with the rule-based controller: a row of signals a second, totals, reason of the end."""
-    _Info: TypeAlias = dict[str, Any]
+    def totals(self) -> tuple[dict[str, float], str]:
+        """Runs with the rule-based controller: totals and reason of the end only."""
+    def start(self) -> Run:
+        """The vehicle before the first step."""
+
+@final
+class Run:
+    """A run in progress."""
+
+    @property
+    def experiment(self) -> Experiment:
+        """What is run."""
+    def rule_based_command(self) -> NDArray[np.float32]:
+        """What the rule-based controller would do next. Its memory moves on: call it once a step."""
+    def step(self, command: NDArray[np.float32]) -> str | None:
+        """Does one step of a second; tells why the run is over, if it is."""
+    def look(self) -> NDArray[np.float64]:
+        """Present values of all signals."""
+    def summary(self) -> dict[str, float]:
+        """Totals so far."""
+
+_Info: TypeAlias = dict[str, Any]
 _Floats: TypeAlias = NDArray[np.float32]
 _Bools: TypeAlias = NDArray[np.bool_]
 
@@ -85,9 +106,7 @@ _Bools: TypeAlias = NDArray[np.bool_]
 class Episode:
     """One environment."""
 
-    def __new__(
-        cls, settings: str, scenario: str | None = None, distribution: str | None = None
-    ) -> Episode:
+    def __new__(cls, settings: str, scenario: str | None = None, distribution: str | None = None) -> Episode:
         """Makes an environment of settings in JSON; trips come from a scenario or else a distribution."""
     @property
     def closed(self) -> bool:
@@ -178,32 +197,11 @@ class Vector:
     def close(self) -> None:
         """Ends them."""
 
-def observation_table() -> list[tuple[str, str, float, float, str, bool]]:
-    """Name, unit, low, high, meaning and default of every row that can be observed."""
+def observation_table() -> list[tuple[tuple[str, str, float, float, str], bool]]:
+    """Name, unit, low, high and meaning of every row that can be observed; whether it is by default."""
 
 def reward_parts() -> list[str]:
     """Names of the parts of a reward."""
-
-def totals(self) -> tuple[dict[str, float], str]:
-        """Runs with the rule-based controller: totals and reason of the end only."""
-    def start(self) -> Run:
-        """The vehicle before the first step."""
-
-@final
-class Run:
-    """A run in progress."""
-
-    @property
-    def experiment(self) -> Experiment:
-        """What is run."""
-    def rule_based_command(self) -> NDArray[np.float32]:
-        """What the rule-based controller would do next. Its memory moves on: call it once a step."""
-    def step(self, command: NDArray[np.float32]) -> str | None:
-        """Does one step of a second; tells why the run is over, if it is."""
-    def look(self) -> NDArray[np.float64]:
-        """Present values of all signals."""
-    def summary(self) -> dict[str, float]:
-        """Totals so far."""
 
 def totals(scenarios: Sequence[str], overrides: Sequence[str] = []) -> list[tuple[dict[str, float], str]]:
     """Totals of several scenarios with the same overrides, run side by side."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 import numpy as np
@@ -25,14 +25,14 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     ## Description
 
     An electric vehicle after Jeffs et al. 2019 drives a cycle second by second. A refrigerant loop moves heat
-    between two coolant loops, the chiller (cold) and the high temperature circuit (HTC, hot). The agent decides
-    which components are connected to which loop, how hard the compressor works and whether the PTC heater may
-    help. It is paid for a comfortable cabin and for little energy.
+    between two coolant loops, the chiller (cold) and the high temperature circuit (HTC, hot). The agent
+    decides which components are connected to which loop, how hard the compressor works and whether the PTC
+    heater may help. It is paid for a comfortable cabin and for little energy.
 
-    The plant protects itself whatever the agent asks: a connection is only granted while there is a temperature
-    difference in the right direction, and pressure, coolant temperatures, compressor envelope, battery power
-    and frost on the front-end exchanger have limits of their own. `previous_...` observations show what was
-    asked, `..._on_htc` and `..._on_chiller` what was granted.
+    The plant protects itself whatever the agent asks: a connection is only granted while there is a
+    temperature difference in the right direction, and pressure, coolant temperatures, compressor envelope,
+    battery power and frost on the front-end exchanger have limits of their own. `previous_...` observations
+    show what was asked, `..._on_htc` and `..._on_chiller` what was granted.
 
     ## Action Space
 
@@ -50,14 +50,14 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     | 7   | compressor_power | off, 10 levels                  |
 
     The levels of the compressor run evenly in the logarithm from its lowest to its full power. With
-    `continuous=True` the space is a `Box` in [-1, 1] with the same rows: options are equal parts of the range,
-    the compressor is off below -0.9. Other rows of the actuator table (`hp_gym.command.ACTUATORS`: shares of
-    recirculated air, blower, coolant flows, requested heat flows, valves, set point of the PTC) can be added by
-    name; as levels they have 11. A row that the agent does not control does what scenario and rule-based
-    controller give it.
+    `continuous=True` the space is a `Box` in [-1, 1] with the same rows: options are equal parts of the
+    range, the compressor is off below -0.9. Other rows of the actuator table (`hp_gym.command.ACTUATORS`:
+    shares of recirculated air, blower, coolant flows, requested heat flows, valves, set point of the PTC) can
+    be added by name; as levels they have 11. A row that the agent does not control does what scenario and
+    rule-based controller give it.
 
-    `action_masks()` marks the options that the plant would grant in the coming second, flat, as MaskablePPO of
-    sb3-contrib expects.
+    `action_masks()` marks the options that the plant would grant in the coming second, flat, as MaskablePPO
+    of sb3-contrib expects.
 
     ## Observation Space
 
@@ -122,32 +122,34 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     | 54  | previous_ptc                    | -    | -1      | 1      |
     | 55  | previous_compressor_power       | -    | -1      | 1      |
 
-    This is what a car without navigation can know. Further rows by name: `preview` (the speed 2 to 80 s ahead),
-    `time_left_s`, and every other signal of the plant (`hp_gym._core.observation_table()`).
+    This is what a car without navigation can know. Further rows by name: `preview` (the speed 2 to 80 s
+    ahead), `time_left_s`, and every other signal of the plant (`hp_gym._core.observation_table()`).
 
     ## Rewards
 
     In points, four parts that `info` tells apart; each is the same expression as the KPI of a benchmark:
 
-    - `reward_energy`: minus 10 points for a kWh of attributable energy, the chemical energy drawn from the cells
-      minus that of a reference trip (the same cycle with battery, motor and oil at 25 degC, without heating and
-      cooling). Losses and lost recuperation of a cold battery count; the reference never depends on the agent.
-    - `reward_discomfort`: minus 5 points for an hour at 1 K between cabin and 22 degC while somebody is in the
-      car. There is no dead band.
+    - `reward_energy`: minus 10 points for a kWh of attributable energy, the chemical energy drawn from the
+      cells minus that of a reference trip (the same cycle with battery, motor and oil at 25 degC, without
+      heating and cooling). Losses and lost recuperation of a cold battery count; the reference never depends
+      on the agent.
+    - `reward_discomfort`: minus 5 points for an hour at 1 K between cabin and 22 degC while somebody is in
+      the car. There is no dead band.
     - `reward_heat_left`: at arrival, a credit for the heat stored since the start in cabin, battery (up to 20
       degC), coolant loops and thermal battery. 0 by default. In a climate hotter than 22 degC it is the heat
       that is gone from cabin, loops and thermal battery.
-    - `reward_penalties`: 500 points for a trip that ends before arrival; optional prices for a battery outside
-      its window and for stops of the compressor that a protection forced.
+    - `reward_penalties`: 500 points for a trip that ends before arrival; optional prices for a battery
+      outside its window and for stops of the compressor that a protection forced.
 
-    `reward` chooses among `balanced`, `energy`, `comfort`, `stored-heat` and `durable`, a file, or single weights
-    (`{"base": "balanced", "discomfort_per_k_h": 8.0}`).
+    `reward` chooses among `balanced`, `energy`, `comfort`, `stored-heat` and `durable`, a file, or single
+    weights (`{"base": "balanced", "discomfort_per_k_h": 8.0}`).
 
     ## Starting State
 
     A car parked for long, everything at the same temperature except where the scenario says otherwise. Trips
-    come from a scenario (always the same) or are drawn from a distribution: `train-v0` (-20 to 40 degC, city and
-    mixed cycles, whole or in parts) by default, `test-v0` (other cycles, other climates) for a held-out test.
+    come from a scenario (always the same) or are drawn from a distribution: `train-v0` (-20 to 40 degC, city
+    and mixed cycles, whole or in parts) by default, `test-v0` (other cycles, other climates) for a held-out
+    test.
 
     ## Episode End
 
@@ -186,15 +188,17 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     ## Vectorized environment
 
     `gymnasium.make_vec("EVHeatPump-v0", num_envs=64)` steps all environments in one call of native code on
-    several threads, with the same results as as many single environments with the same seeds. Its own arguments
-    are `autoreset_mode`, `threads` and `max_episode_steps`, and `scenario` and `distribution` may be lists.
+    several threads, with the same results as as many single environments with the same seeds. Its own
+    arguments are `autoreset_mode`, `threads` and `max_episode_steps`, and `scenario` and `distribution` may
+    be lists.
 
     ## Version History
 
     * v0: Initial version
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["human", "rgb_array"], "render_fps": 30}
+    # Gymnasium declares it so.
+    metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 30}  # noqa: RUF012
 
     def __init__(
         self,
@@ -274,7 +278,7 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
         self.render()
         return result
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> NDArray[np.uint8] | None:
         """Draws the plant as it is now; returns the picture if `render_mode` is `rgb_array`."""
         if self.render_mode is None:
             gym.logger.warn(

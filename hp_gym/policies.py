@@ -14,9 +14,9 @@ from hp_gym.vector_env import EVHeatPumpVectorEnv
 class HpcuPolicy:
     """Plays an environment by the rules of Jeffs et al. 2019, through the same actions as any agent.
 
-    It reads the plant as a real controller does, not the observation. With the actions `HpcuPolicy.ACTIONS` and
-    `continuous=True` it drives exactly what `hp_gym.simulate` does; with levels it takes the nearest, and with
-    other actions it moves those that there are.
+    It reads the plant as a real controller does, not the observation. With the actions `HpcuPolicy.ACTIONS`
+    and `continuous=True` it drives exactly what `hp_gym.simulate` does; with levels it takes the nearest, and
+    with other actions it moves those that there are.
 
     Args:
         env: An `EVHeatPump-v0`, wrapped or not, single or vector.

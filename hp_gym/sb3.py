@@ -15,8 +15,8 @@ from hp_gym.vector_env import EVHeatPumpVectorEnv
 class SB3VecEnv(VecEnv):
     """An `EVHeatPumpVectorEnv` as stable-baselines3 and sb3-contrib want it.
 
-    Trips are reset within the step that ends them; `terminal_observation` and `TimeLimit.truncated` are in the
-    infos, as algorithms need them to bootstrap.
+    Trips are reset within the step that ends them; `terminal_observation` and `TimeLimit.truncated` are in
+    the infos, as algorithms need them to bootstrap.
 
     Args:
         num_envs: Number of environments.
@@ -26,12 +26,12 @@ class SB3VecEnv(VecEnv):
     def __init__(self, num_envs: int = 1, **kwargs: Any) -> None:
         self.venv = EVHeatPumpVectorEnv(num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **kwargs)
         self.render_mode = self.venv.render_mode
-        self._actions: NDArray[Any] | None = None
+        self._actions: NDArray[Any] = np.empty(0)
         self._returns = np.zeros(num_envs)
         self._lengths = np.zeros(num_envs, dtype=np.int64)
         super().__init__(num_envs, self.venv.single_observation_space, self.venv.single_action_space)
 
-    def reset(self) -> NDArray[np.float32]:  # type: ignore[override]
+    def reset(self) -> NDArray[np.float32]:
         """Begins a trip in every environment, with the seeds and options set before."""
         seeds = list(self._seeds) if any(seed is not None for seed in self._seeds) else None
         observations, infos = self.venv.reset(seed=seeds, options=self._merged_options())
@@ -47,14 +47,14 @@ class SB3VecEnv(VecEnv):
 
     def step_wait(
         self,
-    ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:  # type: ignore[override]
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
         """Drives all environments on."""
         observations, rewards, terminated, truncated, infos = self.venv.step(self._actions)
         done = terminated | truncated
         self._returns += rewards
         self._lengths += 1
         told: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
-        for index in np.flatnonzero(done):
+        for index in np.flatnonzero(done).tolist():
             final = _one(infos["final_info"], index)
             final["terminal_observation"] = infos["final_obs"][index]
             final["TimeLimit.truncated"] = bool(truncated[index] and not terminated[index])
@@ -93,8 +93,8 @@ class SB3VecEnv(VecEnv):
     ) -> list[Any]:
         """Calls a method of environments.
 
-        `action_masks`, `rule_based_action`, `get_state`, `set_state`, `signals` and `kpis` are those of the single
-        environment.
+        `action_masks`, `rule_based_action`, `get_state`, `set_state`, `signals` and `kpis` are those of the
+        single environment.
 
         Raises:
             AttributeError: There is no such method.

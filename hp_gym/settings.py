@@ -99,7 +99,9 @@ def _actions(actions: str | Sequence[str]) -> list[str]:
     if not isinstance(actions, str):
         return _names("actions", actions)
     if actions not in ACTION_SETS:
-        message = f"unknown set of actions `{actions}`; available: {', '.join(ACTION_SETS)}, or a list of names"
+        message = (
+            f"unknown set of actions `{actions}`; available: {', '.join(ACTION_SETS)}, or a list of names"
+        )
         raise _core.ConfigurationError(message)
     return list(ACTION_SETS[actions])
 
@@ -154,9 +156,9 @@ def action_space(episode: _core.Episode, settings: Settings) -> spaces.Space[Any
     return spaces.Box(-1.0, 1.0, (length,), np.float32)
 
 
-def observation_space(episode: _core.Episode) -> spaces.Box:
+def observation_space(episode: _core.Episode) -> spaces.Box[np.float32]:
     """Returns the space of one observation."""
-    return spaces.Box(-1.0, 1.0, (len(episode.observation_rows()),), np.float32)
+    return spaces.Box[np.float32](-1.0, 1.0, (len(episode.observation_rows()),), np.float32)
 
 
 def core_seed(seed: int) -> int:

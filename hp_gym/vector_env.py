@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from hp_gym import _core, settings, signals
 from hp_gym.env import EVHeatPumpEnv
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from hp_gym.overrides import Overrides, Value
     from hp_gym.rendering import Renderer
@@ -168,7 +167,7 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         self._last = observations
         return observations, rewards, terminated, truncated, infos
 
-    def render(self) -> tuple[NDArray[np.uint8], ...] | None:  # type: ignore[override]
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
         """Returns a picture of each environment if `render_mode` is `rgb_array`."""
         if self.render_mode is None:
             return None
@@ -244,9 +243,7 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             message = f"options['reset_mask'] is {mask!r}, but must be an array of bool"
             raise TypeError(message)
         if mask.shape != (self.num_envs,):
-            message = (
-                f"options['reset_mask'] has the shape {mask.shape}, but must have the shape ({self.num_envs},)"
-            )
+            message = f"options['reset_mask'] has the shape {mask.shape}, but must have ({self.num_envs},)"
             raise ValueError(message)
         if not mask.any():
             message = "options['reset_mask'] is all False, but must name at least one environment"
@@ -292,8 +289,8 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         return {**self.__dict__, "_renderers": []}
 
 
-def _at_least_one(what: str, value: int) -> int:
-    if not isinstance(value, int | np.integer) or isinstance(value, bool) or value < 1:
+def _at_least_one(what: str, value: object) -> int:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
         message = f"{what} is {value!r}, but must be a whole number of at least 1"
         raise _core.ConfigurationError(message)
     return int(value)

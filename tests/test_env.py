@@ -33,7 +33,9 @@ def make(**kwargs: Any) -> gym.Env[Any, Any]:
     return gym.make("EVHeatPump-v0", disable_env_checker=True, **kwargs)
 
 
-def drive(env: gym.Env[Any, Any], policy: Any, seed: int = 0) -> tuple[np.ndarray, list[float], dict[str, Any]]:
+def drive(
+    env: gym.Env[Any, Any], policy: Any, seed: int = 0
+) -> tuple[np.ndarray, list[float], dict[str, Any]]:
     """Drives a trip to its end; returns all signals second by second, the rewards and the last info."""
     observation, _ = env.reset(seed=seed)
     inner: Any = env.unwrapped

@@ -11,7 +11,11 @@ DOCUMENTATION = EVHeatPumpEnv.__doc__ or ""
 def table(section: str) -> list[list[str]]:
     """Rows of the first table of a section, without its head."""
     text = DOCUMENTATION.split(f"## {section}")[1].split("\n    ## ")[0]
-    rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in text.splitlines() if "|" in line]
+    rows = [
+        [cell.strip() for cell in line.strip().strip("|").split("|")]
+        for line in text.splitlines()
+        if "|" in line
+    ]
     return rows[2:]
 
 
@@ -26,7 +30,10 @@ def test_the_action_table_is_that_of_the_actuators() -> None:
 
 
 def test_the_observation_table_is_that_of_the_core() -> None:
-    rows = [(int(num), name, unit, float(low), float(high)) for num, name, unit, low, high in table("Observation Space")]
+    rows = [
+        (int(num), name, unit, float(low), float(high))
+        for num, name, unit, low, high in table("Observation Space")
+    ]
     observed = EVHeatPumpEnv()._episode.observation_rows()
     assert rows == [(num, name, unit, low, high) for num, (name, unit, low, high, _) in enumerate(observed)]
 

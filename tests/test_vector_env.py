@@ -56,13 +56,17 @@ def same(ours: Any, theirs: Any, where: str) -> None:
     continuous=st.booleans(),
     noise=st.sampled_from([0.0, 0.05]),
 )
-def test_every_autoreset_mode_equals_single_environments(
-    mode: AutoresetMode, seed: int, count: int, threads: int, limit: int | None, continuous: bool, noise: float
+def test_every_autoreset_mode_equals_single_environments(  # noqa: PLR0917
+    mode: AutoresetMode,
+    seed: int,
+    count: int,
+    threads: int,
+    limit: int | None,
+    continuous: bool,
+    noise: float,
 ) -> None:
     kwargs = {**SHORT, "continuous": continuous, "sensor_noise": noise}
-    ours = EVHeatPumpVectorEnv(
-        count, autoreset_mode=mode, threads=threads, max_episode_steps=limit, **kwargs
-    )
+    ours = EVHeatPumpVectorEnv(count, autoreset_mode=mode, threads=threads, max_episode_steps=limit, **kwargs)
     theirs = SyncVectorEnv([lambda: single(limit, kwargs)] * count, autoreset_mode=mode)
     same(ours.reset(seed=seed), theirs.reset(seed=seed), "reset")
     ours.action_space.seed(seed)

@@ -297,14 +297,14 @@ impl Episode {
     }
 }
 
-/// Name, unit, low, high, meaning and default of every row that can be observed with the default actions.
+/// Every row that can be observed with the default actions, and whether it is by default.
 #[pyfunction]
-pub fn observation_table() -> PyResult<Vec<(String, &'static str, f64, f64, String, bool)>> {
+pub fn observation_table() -> PyResult<Vec<(ObservedRow, bool)>> {
     let names: Vec<String> =
         ACTUATORS[..action::DEFAULT_ROWS].iter().map(|actuator| actuator.name.to_owned()).collect();
     let actions = action::ActionTable::new(&names).map_err(to_python)?;
     let rows = hp_episode::observation::all(&actions).into_iter();
-    Ok(rows.map(|row| (row.name, row.unit, row.low, row.high, row.description, row.default)).collect())
+    Ok(rows.map(|row| ((row.name, row.unit, row.low, row.high, row.description), row.default)).collect())
 }
 
 /// Names of the parts of a reward.

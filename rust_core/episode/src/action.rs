@@ -262,9 +262,9 @@ mod tests {
 
     #[test]
     fn every_option_is_the_nearest_to_its_own_value() {
-        for row in 0..ACTUATOR_COUNT {
+        for (row, actuator) in ACTUATORS.iter().enumerate() {
             for option in 0..options(row) {
-                assert_eq!(nearest_option(row, option_value(row, option)), option, "{}", ACTUATORS[row].name);
+                assert_eq!(nearest_option(row, option_value(row, option)), option, "{}", actuator.name);
             }
         }
     }

@@ -110,7 +110,7 @@ impl Episode {
     /// A file of the trip cannot be loaded; the trip in progress stays as it is.
     pub fn reset(&mut self, once: Option<&Source>) -> PlantResult<()> {
         let trip = match once.unwrap_or(&self.source) {
-            Source::Scenario(trip) => trip.clone(),
+            Source::Scenario(trip) => Trip::clone(trip),
             Source::Distribution(distribution) => distribution.draw(&mut self.random),
         };
         self.current = Some(Current::of(&self.setup, trip)?);

@@ -40,7 +40,7 @@ pub struct Settings {
 #[derive(Debug, Clone)]
 pub enum Source {
     /// Always the same.
-    Scenario(Trip),
+    Scenario(Arc<Trip>),
     /// Drawn anew.
     Distribution(Arc<Distribution>),
 }
@@ -115,7 +115,7 @@ impl Setup {
     /// # Errors
     /// See [`Garage::trip`].
     pub fn scenario(&self, name: &str) -> PlantResult<Source> {
-        self.garage.trip(name).map(Source::Scenario)
+        self.garage.trip(name).map(|trip| Source::Scenario(Arc::new(trip)))
     }
 
     /// Trips of a distribution.
