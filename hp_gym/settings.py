@@ -1,5 +1,7 @@
 """What an environment is made with, checked once for the single and the vector environment."""
 
+from __future__ import annotations
+
 import json
 import math
 import os
@@ -158,7 +160,9 @@ def action_space(episode: _core.Episode, settings: Settings) -> spaces.Space[Any
 
 def observation_space(episode: _core.Episode) -> spaces.Box[np.float32]:
     """Returns the space of one observation."""
-    return spaces.Box[np.float32](-1.0, 1.0, (len(episode.observation_rows()),), np.float32)
+    # Gymnasium 1.2 has no generic Box.
+    box: spaces.Box[np.float32] = spaces.Box(-1.0, 1.0, (len(episode.observation_rows()),), np.float32)
+    return box
 
 
 def core_seed(seed: int) -> int:
