@@ -1,4 +1,4 @@
-"""Measures the environments: steps per second against CartPole-v1, and what levels cost the rule-based controller.
+"""Measures the environments: steps per second against CartPole-v1, and what levels cost the HPCU.
 
 uv run python scripts/measure_env.py
 """
@@ -78,7 +78,7 @@ def main() -> None:
     for scenario in [name for name in hp_gym.names("scenario") if name.startswith("jeffs2019/")]:
         hpcu, default = cost_of_levels(scenario, "hpcu"), cost_of_levels(scenario, "default")
         print(
-            f"{scenario} on levels: {hpcu:+.2f} % energy with all rows of the HPCU, {default:+.2f} % with the default"
+            f"{scenario} on levels: {hpcu:+.2f} % energy with the HPCU's actions, {default:+.2f} % with the default"
         )
 
 
