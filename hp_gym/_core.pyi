@@ -31,7 +31,7 @@ class Experiment:
         cls,
         scenario: str,
         controller: str | None = None,
-        overrides: Sequence[str] = [],
+        overrides: Sequence[str] = ...,
         substeps: int = 1,
     ) -> Experiment:
         """Loads a scenario.
@@ -94,7 +94,7 @@ class Run:
     def summary(self) -> dict[str, float]:
         """Totals so far."""
 
-def totals(scenarios: Sequence[str], overrides: Sequence[str] = []) -> list[tuple[dict[str, float], str]]:
+def totals(scenarios: Sequence[str], overrides: Sequence[str] = ...) -> list[tuple[dict[str, float], str]]:
     """Totals of several scenarios with the same overrides, run side by side."""
 
 def signals() -> list[tuple[str, str, str]]:

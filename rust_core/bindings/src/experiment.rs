@@ -71,7 +71,7 @@ impl Experiment {
 
     #[getter]
     fn controller(&self) -> &str {
-        &self.inner.scenario.controller
+        &self.inner.controller
     }
 
     #[getter]

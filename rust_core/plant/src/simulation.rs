@@ -23,6 +23,8 @@ pub struct Experiment {
     pub plant: Plant,
     /// Drive cycle.
     pub cycle: DriveCycle,
+    /// Name of the controller's file.
+    pub controller: String,
     /// Rule-based controller.
     pub hpcu: Hpcu,
 }
@@ -104,11 +106,12 @@ impl Experiment {
             });
         }
         let scenario: ScenarioParameters = library::load(Kind::Scenario, scenario, &part("scenario"))?;
-        let parameters: HpcuParameters =
-            library::load(Kind::Controller, controller.unwrap_or(&scenario.controller), &part("controller"))?;
+        let controller = controller.unwrap_or(&scenario.controller).to_owned();
+        let parameters: HpcuParameters = library::load(Kind::Controller, &controller, &part("controller"))?;
         Ok(Self {
             plant: Plant::load(&scenario.vehicle, &part("vehicle"))?,
             cycle: DriveCycle::load(&scenario.cycle)?,
+            controller,
             hpcu: Hpcu { parameters, strategy: scenario.strategy.clone() },
             scenario,
         })
