@@ -70,9 +70,10 @@ def test_conditions_are_strict_where_they_say_so() -> None:
     assert not below(1.0, 1.0, 1.0).holds
     assert at_least(1.0, 1.0, 1.0).holds
     assert at_most(1.0, 1.0, 1.0).holds
-    assert above(0.0, 1.0, 0.5).shortfall == 2.0
+    assert above(0.0, 1.0, 0.5).shortfall() == 2.0
+    assert above(1.1, 1.0, 0.5).shortfall(wanted=0.3) == pytest.approx(0.1)
     assert not below(float("nan"), 1.0, 1.0).holds
-    assert np.isfinite(below(float("inf"), 1.0, 1.0).shortfall)
+    assert np.isfinite(below(float("inf"), 1.0, 1.0).shortfall())
 
 
 def test_json_has_the_promised_keys(reproduction: Reproduction) -> None:

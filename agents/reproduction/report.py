@@ -116,15 +116,21 @@ def scenario_table(rows: Iterable[Row]) -> Table:
     """Tables 1 and 2 of the paper beside the model."""
     table = Table(title="Jeffs et al. 2019, Tables 1 and 2, beside the model", title_justify="left")
     table.add_column("scenario", no_wrap=True)
-    table.add_column("", overflow="fold")
-    for heading in ("paper\nkWh", "model\nkWh", "error\n%", "paper\nSOC %", "model\nSOC %", "error\npoints"):
-        table.add_column(heading, justify="right")
-    table.add_column("40 Ah cells\nerror, points", justify="right")
+    headings = (
+        "paper\nkWh",
+        "model\nkWh",
+        "error\n%",
+        "paper\nSOC %",
+        "model\nSOC %",
+        "error\npt",
+        "40 Ah\npt",
+    )
+    for heading in headings:
+        table.add_column(heading, justify="right", no_wrap=True)
     for row in rows:
         published, summary = row.published, row.run.summary
         table.add_row(
             published.id,
-            published.description,
             f"{published.energy_kwh:.2f}",
             f"{summary['energy_kwh']:.2f}",
             _coloured(row.energy_error_pct, ENERGY_GOAL_PCT),
