@@ -99,11 +99,16 @@ class Reproduction:
         }
 
 
-def reproduce(substeps: int = 1) -> Reproduction:
-    """Runs the paper's scenarios and judges its claims."""
+def reproduce(substeps: int = 1, overrides: Sequence[str] = ()) -> Reproduction:
+    """Runs the paper's scenarios and judges its claims.
+
+    Args:
+        substeps: Steps of the plant in a second.
+        overrides: `key=value` replacements for all scenarios.
+    """
     scenarios = [published.id for published in PUBLISHED_SCENARIOS]
-    runs, wall_s = simulate_all(scenarios, substeps=substeps)
-    literal, _ = simulate_all(scenarios, [f'scenario.vehicle="{LITERAL_VEHICLE}"'], substeps)
+    runs, wall_s = simulate_all(scenarios, overrides, substeps)
+    literal, _ = simulate_all(scenarios, [*overrides, f'scenario.vehicle="{LITERAL_VEHICLE}"'], substeps)
     return Reproduction(
         rows=[Row(*row) for row in zip(PUBLISHED_SCENARIOS, runs, literal, strict=True)],
         claims=judge_all(runs),
