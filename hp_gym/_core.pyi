@@ -35,7 +35,7 @@ class Experiment:
         cls,
         scenario: str,
         controller: str | None = None,
-        overrides: Sequence[str] = [],
+        overrides: Sequence[str] = ...,
         substeps: int = 1,
     ) -> Experiment:
         """Loads a scenario.
@@ -203,7 +203,7 @@ def observation_table() -> list[tuple[tuple[str, str, float, float, str], bool]]
 def reward_parts() -> list[str]:
     """Names of the parts of a reward."""
 
-def totals(scenarios: Sequence[str], overrides: Sequence[str] = []) -> list[tuple[dict[str, float], str]]:
+def totals(scenarios: Sequence[str], overrides: Sequence[str] = ...) -> list[tuple[dict[str, float], str]]:
     """Totals of several scenarios with the same overrides, run side by side."""
 
 def signals() -> list[tuple[str, str, str]]:

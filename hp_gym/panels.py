@@ -21,6 +21,7 @@ class Curve:
     label: str
     colour: str
     style: str = "-"
+    width: float = 1.3
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ LOOP_TEMPERATURES = Panel(
 DRIVE_POWERS = Panel(
     "Drive",
     "kW",
-    [Curve("battery_power_w", "battery", GREEN), Curve("traction_power_w", "traction", BLACK)],
+    [Curve("battery_power_w", "battery", GREEN), Curve("traction_power_w", "traction", BLACK, width=0.8)],
     scale=1e-3,
 )
 PRESSURES = Panel(
@@ -109,6 +110,8 @@ HEAT_FLOWS = Panel(
         Curve("motor_chiller_heat_flow_w", "from motor", BLACK),
         Curve("battery_chiller_heat_flow_w", "from battery", GREEN),
         Curve("cabin_chiller_heat_flow_w", "from cabin", GREY),
+        Curve("thermal_battery_htc_heat_flow_w", "thermal battery, HTC", GREEN, "--"),
+        Curve("thermal_battery_chiller_heat_flow_w", "thermal battery, chiller", BLUE, "--"),
     ],
     scale=1e-3,
     hide_idle=True,

@@ -57,7 +57,7 @@ def plot(trajectory: Trajectory, path: str | os.PathLike[str] | None = None) -> 
     """Draws a run; see `Trajectory.plot`."""
     suffix = "" if path is None else require_suffix(path, PICTURE_SUFFIXES)
     with mpl.rc_context(STYLE):
-        layout = ConstrainedLayoutEngine(hspace=0.03, wspace=0.03)
+        layout = ConstrainedLayoutEngine(w_pad=0.1, h_pad=0.08, hspace=0.02, wspace=0.02)
         if path is None:
             return _draw(plt.figure(figsize=SIZE_INCH, layout=layout), trajectory)
         figure = _draw(Figure(figsize=SIZE_INCH, layout=layout), trajectory)
@@ -79,7 +79,8 @@ def _draw(figure: Figure, trajectory: Trajectory) -> Figure:
     for axes in grid[-1]:
         axes.set_xlabel("time [min]")
         axes.xaxis.set_major_locator(MultipleLocator(5.0))
-    figure.align_ylabels()
+    figure.align_ylabels(grid[:, 0])
+    figure.align_ylabels(grid[:-1, 1])
     figure.suptitle(_headline(trajectory), x=0.01, ha="left", fontsize=13, fontweight="bold")
     return figure
 
@@ -97,28 +98,38 @@ def _draw_panel(axes: Axes, trajectory: Trajectory, time_min: NDArray[np.float64
     for curve in panel.curves:
         values = _values(trajectory, panel, curve)
         if not (panel.hide_idle and not values.any()):
-            axes.plot(time_min, values, curve.style, color=curve.colour, label=curve.label)
+            axes.plot(
+                time_min, values, curve.style, color=curve.colour, linewidth=curve.width, label=curve.label
+            )
     for name in panel.limits:
-        axes.axhline(trajectory.limits[name], color=GREY, linestyle=":", linewidth=1.2)
-        axes.annotate(
-            "limit",
-            (1.0, trajectory.limits[name]),
-            xycoords=("axes fraction", "data"),
-            xytext=(-2, 2),
-            textcoords="offset points",
-            ha="right",
-            color=GREY,
-            fontsize=8,
-        )
+        _draw_limit(axes, trajectory.limits[name])
     if panel is panels.SPEED:
         axes.fill_between(time_min, _values(trajectory, panel, panel.curves[0]), color=panels.LIGHT)
+        axes.set_ylim(bottom=0.0)
     if panel is panels.COMFORT:
         low, high = trajectory.limits["cabin_lowest_degc"], trajectory.limits["cabin_highest_degc"]
         axes.axhspan(low, high, color=GREEN, alpha=0.18, linewidth=0.0, label="comfort band")
     axes.set_title(panel.title)
     axes.set_ylabel(f"[{panel.unit}]")
-    if len(axes.get_legend_handles_labels()[0]) > 1:
-        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.02), ncols=6)
+    curves = len(axes.get_legend_handles_labels()[0])
+    if curves > 1:
+        # Beside the title; in several rows where one would run into it.
+        columns = curves if curves <= 4 else 3
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.02), ncols=columns)
+
+
+def _draw_limit(axes: Axes, limit: float) -> None:
+    axes.axhline(limit, color=GREY, linestyle=":", linewidth=1.2)
+    axes.annotate(
+        "limit",
+        (1.0, limit),
+        xycoords=("axes fraction", "data"),
+        xytext=(3, 0),
+        textcoords="offset points",
+        verticalalignment="center",
+        color=GREY,
+        fontsize=8,
+    )
 
 
 def _values(trajectory: Trajectory, panel: Panel, curve: Curve) -> NDArray[np.float64]:

@@ -15,6 +15,9 @@ from pathlib import Path
 from typing import Any
 
 import CoolProp
+import numpy as np
+from CoolProp.CoolProp import AbstractState
+from numpy.typing import NDArray
 from scipy.optimize import root
 from tespy.components import Compressor, CycleCloser, SimpleHeatExchanger, Valve
 from tespy.connections import Connection
@@ -60,12 +63,12 @@ def efficiencies(compressor: dict[str, float], ratio: float, speed: float) -> tu
 
 def limited(target: float, room: float) -> float:
     """Superheat or subcooling that leaves the coolant room."""
-    return room / (1.0 + (room / target) ** 4) ** 0.25
+    return float(room / (1.0 + (room / target) ** 4) ** 0.25)
 
 
 def coolprop_cycle(parameters: dict[str, Any], point: Point) -> Point:
     """The same operating point from CoolProp properties."""
-    fluid = CoolProp.AbstractState("HEOS", REFRIGERANT)
+    fluid = AbstractState("HEOS", REFRIGERANT)
     compressor = parameters["compressor"]
 
     def conductance(rate: float, ua: float) -> float:
@@ -102,8 +105,8 @@ def coolprop_cycle(parameters: dict[str, Any], point: Point) -> Point:
             "isentropic_efficiency": isentropic,
         }
 
-    def residuals(unknowns: list[float]) -> list[float]:
-        values = cycle(*unknowns)
+    def residuals(unknowns: NDArray[np.float64], /) -> list[float]:
+        values = cycle(*map(float, unknowns))
         return [
             cold * (point["cold_return_k"] - unknowns[0]) - values["evaporator_heat_flow_w"],
             hot * (unknowns[1] - point["hot_return_k"]) - values["condenser_heat_flow_w"],
@@ -113,12 +116,12 @@ def coolprop_cycle(parameters: dict[str, Any], point: Point) -> Point:
     solution = root(residuals, [point["cold_return_k"] - 4.0, point["hot_return_k"] + 6.0, 40.0], tol=1e-10)
     if not max(abs(residual) for residual in residuals(solution.x)) < 1e-3:
         raise RuntimeError(f"SciPy found no solution: {solution.message}")
-    return cycle(*solution.x)
+    return cycle(*map(float, solution.x))
 
 
 def tespy_cycle(parameters: dict[str, Any], point: Point) -> Point:
     """The same operating point as a TESPy network."""
-    fluid = CoolProp.AbstractState("HEOS", REFRIGERANT)
+    fluid = AbstractState("HEOS", REFRIGERANT)
     pressures = []
     for quality, name in ((1.0, "evaporating_temperature_k"), (0.0, "condensing_temperature_k")):
         fluid.update(CoolProp.QT_INPUTS, quality, point[name])

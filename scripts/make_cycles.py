@@ -112,7 +112,7 @@ def nedc() -> Cycle:
 def epa(cycle_id: str, title: str) -> Cycle:
     """A US schedule: back to its tenths of mph, which fastsim holds as rounded m/s, then to km/h."""
     # Imported here: no other cycle needs this package.
-    from fastsim import Cycle as FastsimCycle  # noqa: PLC0415
+    from fastsim import Cycle as FastsimCycle
 
     speed_m_s = FastsimCycle.from_resource(f"{cycle_id}.csv").to_pydict()["speed_meters_per_second"]
     speed_mph = [round(speed * KM_H_PER_M_S / KM_H_PER_MPH, 1) for speed in speed_m_s]

@@ -77,9 +77,7 @@ def main() -> None:
         )
     for scenario in [name for name in hp_gym.names("scenario") if name.startswith("jeffs2019/")]:
         hpcu, default = cost_of_levels(scenario, "hpcu"), cost_of_levels(scenario, "default")
-        print(
-            f"{scenario} on levels: {hpcu:+.2f} % energy with the HPCU's actions, {default:+.2f} % with the default"
-        )
+        print(f"{scenario} on levels: {hpcu:+.2f} % energy, {default:+.2f} % with the default ones")
 
 
 if __name__ == "__main__":

@@ -84,6 +84,7 @@ class Problem:
         prior_sigma_share: The same for the distance from the prior, as a share of the range.
         maximum_evaluations: Evaluations of all targets after which the fit stops.
         seed: Seed of the disturbed starts.
+        soft_claim_margin: Margin that the fit wants a soft claim to hold with, in units of its scale.
         subset_energy: Scenarios whose energy a fit to a subset sees.
         subset_final_soc: Scenarios whose final state of charge a fit to a subset sees.
     """
@@ -99,6 +100,7 @@ class Problem:
     prior_sigma_share: float
     maximum_evaluations: int
     seed: int = 0
+    soft_claim_margin: float = 0.0
     subset_energy: tuple[str, ...] = ()
     subset_final_soc: tuple[str, ...] = ()
 
@@ -156,7 +158,8 @@ def parse(tables: Mapping[str, Any]) -> Problem:
     _allow("the file", tables, {"calibration", "parameter", "target", "soft_claim"})
     head = tables.get("calibration", {})
     fields = {"description", "vehicle", "controller", "energy_sigma_share", "final_soc_sigma_pct"}
-    fields |= {"prior_sigma_share", "maximum_evaluations", "seed", "subset_energy", "subset_final_soc"}
+    fields |= {"prior_sigma_share", "maximum_evaluations", "seed", "soft_claim_margin"}
+    fields |= {"subset_energy", "subset_final_soc"}
     _allow("[calibration]", head, fields)
     targets = tuple(_target(table) for table in tables.get("target", ()))
     if not targets:

@@ -86,7 +86,8 @@ class Residuals:
             }
             labelled = by_label(runs)
             claims = [
-                self.problem.soft_claims[claim.id] * float(np.linalg.norm(claim.judge(labelled).shortfalls))
+                self.problem.soft_claims[claim.id]
+                * float(np.linalg.norm(claim.judge(labelled).shortfalls(self.problem.soft_claim_margin)))
                 for claim in self._claims
             ]
         else:

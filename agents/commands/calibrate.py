@@ -7,6 +7,7 @@ from time import perf_counter
 from typing import Annotated
 
 import typer
+
 from agents.output import console, fail, print_json
 
 

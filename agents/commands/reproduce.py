@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+
 from agents.output import console, fail, print_json
 
 
@@ -11,12 +12,20 @@ def reproduce(
     *,
     out: Annotated[Path, typer.Option(help="Folder for the figures.")] = Path("out/reproduce"),
     substeps: Annotated[int, typer.Option(min=1, max=1000, help="Steps of the plant in a second.")] = 1,
+    changes: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change a value in all scenarios; may be repeated."),
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the figures as JSON.")] = False,
 ) -> None:
     """Sets the nine scenarios of Jeffs et al. 2019 beside the model and judges the text's claims."""
     from agents.reproduction import figures, report
+    from hp_gym import ConfigurationError
 
-    reproduction = report.reproduce(substeps)
+    try:
+        reproduction = report.reproduce(substeps, changes or ())
+    except ConfigurationError as error:
+        fail(str(error))
     try:
         paths = figures.write_all(report.labelled(reproduction), out)
     except OSError as error:

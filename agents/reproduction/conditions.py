@@ -13,18 +13,19 @@ class Condition:
 
     Attributes:
         holds: Whether it is true.
-        shortfall: How far it is from being true, in units of a natural scale; 0 where it holds.
+        margin: How far it is inside (positive) or outside, in units of a natural scale.
     """
 
     holds: bool
-    shortfall: float
+    margin: float
+
+    def shortfall(self, wanted: float = 0.0) -> float:
+        """How much the margin lacks of a wanted one; 0 where it has it."""
+        return min(max(0.0, wanted - self.margin), LARGEST_SHORTFALL)
 
 
 def _condition(holds: bool, margin: float, scale: float) -> Condition:
-    if holds:
-        return Condition(True, 0.0)
-    shortfall = LARGEST_SHORTFALL if math.isnan(margin) else min(max(0.0, -margin / scale), LARGEST_SHORTFALL)
-    return Condition(False, shortfall)
+    return Condition(holds, -LARGEST_SHORTFALL if math.isnan(margin) else margin / scale)
 
 
 def above(value: float, limit: float, scale: float) -> Condition:
@@ -64,7 +65,6 @@ class Outcome:
         """Whether the claim is true of the model."""
         return all(condition.holds for condition in self.conditions)
 
-    @property
-    def shortfalls(self) -> list[float]:
-        """How far each condition is from being true."""
-        return [condition.shortfall for condition in self.conditions]
+    def shortfalls(self, wanted: float = 0.0) -> list[float]:
+        """How much the margin of each condition lacks of a wanted one."""
+        return [condition.shortfall(wanted) for condition in self.conditions]

@@ -15,6 +15,9 @@ use std::collections::BTreeMap;
 /// Totals of a run and why it ended.
 type Totals<'py> = (Bound<'py, PyDict>, &'static str);
 
+/// Rows of signals, totals and why the run ended.
+type Trajectory<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyDict>, &'static str);
+
 fn parse_overrides(overrides: &[String]) -> PyResult<Vec<Override>> {
     overrides.iter().map(|text| Override::parse(text).map_err(to_python)).collect()
 }
@@ -71,7 +74,7 @@ impl Experiment {
 
     #[getter]
     fn controller(&self) -> &str {
-        &self.inner.scenario.controller
+        &self.inner.controller
     }
 
     #[getter]
@@ -121,10 +124,7 @@ impl Experiment {
         Ok(command.0.to_vec().into_pyarray(py))
     }
 
-    fn simulate<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyDict>, &'static str)> {
+    fn simulate<'py>(&self, py: Python<'py>) -> PyResult<Trajectory<'py>> {
         let trajectory = py.detach(|| self.inner.simulate());
         let rows = trajectory.values.len() / trajectory.columns;
         let values = trajectory.values.into_pyarray(py).reshape([rows, trajectory.columns])?;

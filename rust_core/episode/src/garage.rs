@@ -103,6 +103,7 @@ impl Garage {
             scenario: trip.scenario.clone(),
             plant: Arc::clone(&origin.plant),
             cycle,
+            controller: origin.controller.clone(),
             hpcu: origin.hpcu.clone(),
         })
     }

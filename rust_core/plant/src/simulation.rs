@@ -25,6 +25,8 @@ pub struct Experiment {
     pub plant: Arc<Plant>,
     /// Drive cycle.
     pub cycle: Arc<DriveCycle>,
+    /// Name of the controller's file.
+    pub controller: String,
     /// Rule-based controller.
     pub hpcu: Hpcu,
 }
@@ -106,11 +108,12 @@ impl Experiment {
             });
         }
         let scenario: ScenarioParameters = library::load(Kind::Scenario, scenario, &part("scenario"))?;
-        let parameters: HpcuParameters =
-            library::load(Kind::Controller, controller.unwrap_or(&scenario.controller), &part("controller"))?;
+        let controller = controller.unwrap_or(&scenario.controller).to_owned();
+        let parameters: HpcuParameters = library::load(Kind::Controller, &controller, &part("controller"))?;
         Ok(Self {
             plant: Arc::new(Plant::load(&scenario.vehicle, &part("vehicle"))?),
             cycle: Arc::new(DriveCycle::load(&scenario.cycle)?),
+            controller,
             hpcu: Hpcu { parameters, strategy: scenario.strategy.clone() },
             scenario,
         })

@@ -1,0 +1,29 @@
+"""The README's snippets run as they stand."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+README = Path(__file__).parents[1] / "README.md"
+SNIPPETS = re.findall(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), flags=re.DOTALL)
+
+
+@pytest.mark.parametrize("snippet", SNIPPETS, ids=range(len(SNIPPETS)))
+def test_snippet_runs(snippet: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    exec(compile(snippet, str(README), "exec"), {})
+
+
+def test_there_are_snippets() -> None:
+    assert SNIPPETS
+
+
+def test_every_command_of_the_readme_exists() -> None:
+    from agents.cli import app
+
+    names = {
+        command.name or command.callback.__name__ for command in app.registered_commands if command.callback
+    }
+    used = set(re.findall(r"uv run hp-gym (\w+)", README.read_text(encoding="utf-8")))
+    assert used <= names
