@@ -32,7 +32,7 @@ fn single_step(criterion: &mut Criterion) {
     });
     criterion.bench_function("HPCU", |bencher| {
         bencher.iter_batched_ref(
-            || run.clone(),
+            || run,
             |run| black_box(experiment.rule_based_command(run)),
             BatchSize::SmallInput,
         );
