@@ -227,6 +227,7 @@ impl ActuatorRanges {
         for range in &mut ranges[REQUESTS..REQUESTS + 6] {
             *range = (0.0, MAXIMUM_REQUEST_W);
         }
+        ranges[RECIRCULATION] = (0.0, vehicle.cabin.maximum_recirculation);
         ranges[CABIN_SET_POINT] = CABIN_SET_POINT_RANGE_K;
         Self(ranges)
     }
