@@ -2,12 +2,12 @@
 
 use hp_plant::circuits::branches::{self, Branch};
 use hp_plant::command::{
-    ACTUATOR_COUNT, ACTUATORS, ActuatorRanges, Command, Connection, Demand, MAXIMUM_REQUEST_W, Member,
-    RECIRCULATION, REQUESTS, Scale,
+    ACTUATOR_COUNT, ACTUATORS, ActuatorRanges, BLOWER, Command, Connection, Demand, MAXIMUM_REQUEST_W,
+    Member, RECIRCULATION, REQUESTS, Scale,
 };
 use hp_plant::control::heat_demand_commander;
 use hp_plant::error::{PlantError, PlantResult};
-use hp_plant::plant::Plant;
+use hp_plant::plant::{Disturbance, Plant};
 use hp_plant::simulation::Experiment;
 use hp_plant::state::State;
 
@@ -123,13 +123,13 @@ impl ActionTable {
 
     /// Which options the plant would grant in the coming second, row by row.
     ///
-    /// The cabin's air inlet depends on recirculation: where an agent controls that too, a connection counts as
+    /// The cabin's air inlet depends on recirculation: where an agent controls that or the blower, a connection counts as
     /// granted if some recirculated share makes it so.
     pub fn write_mask(
         &self,
         plant: &Plant,
         state: &State,
-        ambient_k: f64,
+        disturbance: &Disturbance,
         defaults: &Defaults,
         mask: &mut [bool],
     ) {
@@ -137,7 +137,7 @@ impl ActionTable {
         for &row in &self.rows {
             for option in 0..options(row) {
                 mask[place] = match Member::ALL.get(row) {
-                    Some(&member) => self.granted(plant, state, ambient_k, defaults, member, option),
+                    Some(&member) => self.granted(plant, state, disturbance, defaults, member, option),
                     None => true,
                 };
                 place += 1;
@@ -149,7 +149,7 @@ impl ActionTable {
         &self,
         plant: &Plant,
         state: &State,
-        ambient_k: f64,
+        disturbance: &Disturbance,
         defaults: &Defaults,
         member: Member,
         option: usize,
@@ -157,15 +157,22 @@ impl ActionTable {
         let Some(branch) = Branch::of(member, member.options()[option]) else { return true };
         let connected = state.connected[branch as usize];
         let at = |recirculation: f64| {
-            let temperatures = plant.branch_temperatures(state, recirculation, ambient_k);
+            let temperatures = plant.branch_temperatures(state, recirculation, disturbance.ambient_k);
             branches::allowed(&plant.vehicle, branch, &temperatures, connected)
         };
         if member != Member::Cabin {
-            at(0.0)
-        } else if self.selects(RECIRCULATION) {
-            at(0.0) || at(1.0)
+            return at(0.0);
+        }
+        // Some of it may be held back for the sake of fresh air.
+        let effective = |blower: f32, recirculation: f32| {
+            let (level, share) =
+                (plant.ranges.physical(BLOWER, blower), plant.ranges.physical(RECIRCULATION, recirculation));
+            plant.vehicle.cabin.ventilation(level, share, disturbance.occupants).recirculation
+        };
+        if self.selects(RECIRCULATION) || self.selects(BLOWER) {
+            at(0.0) || at(effective(1.0, 1.0))
         } else {
-            at(plant.ranges.physical(RECIRCULATION, defaults.recirculation(branch == Branch::CabinChiller)))
+            at(effective(defaults.command.0[BLOWER], defaults.recirculation(branch == Branch::CabinChiller)))
         }
     }
 }

@@ -190,8 +190,8 @@ impl Episode {
             return;
         };
         let Current { experiment, progress, defaults, .. } = current;
-        let ambient_k = experiment.disturbance(progress.run.steps).ambient_k;
-        self.setup.actions.write_mask(&experiment.plant, &progress.run.state, ambient_k, defaults, mask);
+        let disturbance = experiment.disturbance(progress.run.steps);
+        self.setup.actions.write_mask(&experiment.plant, &progress.run.state, &disturbance, defaults, mask);
     }
 
     /// Command of the rule-based controller for the next control interval; the same until the next step.

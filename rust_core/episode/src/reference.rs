@@ -40,7 +40,7 @@ impl ReferenceConditions {
             base_load_w: vehicle.controls.auxiliary_power_w
                 + pump(&vehicle.htc.circuit)
                 + pump(&vehicle.chiller.circuit)
-                + vehicle.cabin.ventilation(0.0, 0.0).blower_power_w,
+                + vehicle.cabin.ventilation(0.0, 0.0, 1.0).blower_power_w,
         }
     }
 }

@@ -139,7 +139,8 @@ const PTC: usize = 6;
 pub const COMPRESSOR: usize = 7;
 /// Row of the recirculated share.
 pub const RECIRCULATION: usize = 8;
-const BLOWER: usize = 9;
+/// Row of the blower level.
+pub const BLOWER: usize = 9;
 const HTC_FLOW: usize = 10;
 const CHILLER_FLOW: usize = 11;
 /// First of the six rows of requested heat flows, by member.
@@ -230,6 +231,7 @@ impl ActuatorRanges {
         for range in &mut ranges[REQUESTS..REQUESTS + 6] {
             *range = (0.0, MAXIMUM_REQUEST_W);
         }
+        ranges[RECIRCULATION] = (0.0, vehicle.cabin.maximum_recirculation);
         ranges[CABIN_SET_POINT] = CABIN_SET_POINT_RANGE_K;
         Self(ranges)
     }

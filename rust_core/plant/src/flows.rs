@@ -44,7 +44,7 @@ flows! {
     FrictionBrake, "friction_brake_power_w";
     /// Electrical power of motor and inverter, negative while recuperating.
     Traction, "traction_power_w";
-    /// Traction power that the battery could not deliver.
+    /// Power that the battery could not deliver.
     Unserved, "unserved_power_w";
     /// Heat produced in motor and inverter.
     MotorLoss, "motor_loss_w";

@@ -3,7 +3,9 @@
 use crate::circuits::assembly::{Assembly, LinkConditions, RECOVERY_APPROACH_K};
 use crate::circuits::branches::{self, BRANCH_COUNT, Branch, BranchFlows, BranchTemperatures};
 use crate::circuits::refrigeration_cycle::RefrigerationCycle;
-use crate::circuits::refrigeration_loop::{LoopBoundary, LoopResult, RefrigerationState, SupplyLimit};
+use crate::circuits::refrigeration_loop::{
+    CompressorAllowance, Limit, LoopBoundary, LoopResult, RefrigerationState, SupplyLimit,
+};
 use crate::command::{ActuatorRanges, Command, Connection, Demand};
 use crate::components::battery::{Battery, BatteryStep, CircuitStep, PowerLimits};
 use crate::components::powertrain::Powertrain;
@@ -61,7 +63,7 @@ pub struct StepRecord {
     pub battery_voltage_v: f64,
     /// Mean pack current [A].
     pub battery_current_a: f64,
-    /// Limits of the battery at the end of the step.
+    /// Limits of the battery during the step.
     pub power_limits: PowerLimits,
     /// Worst ledger entry of the sub-steps.
     pub ledger: LedgerEntry,
@@ -267,7 +269,9 @@ impl Plant {
     fn begin_period(&self, state: &mut State, demand: Demand, disturbance: &Disturbance) -> Period {
         let vehicle = &self.vehicle;
         let speed_m_s = 0.5 * (disturbance.start_speed_m_s + disturbance.end_speed_m_s);
-        let temperatures = self.branch_temperatures(state, demand.recirculation, disturbance.ambient_k);
+        let ventilation =
+            vehicle.cabin.ventilation(demand.blower_level, demand.recirculation, disturbance.occupants);
+        let temperatures = self.branch_temperatures(state, ventilation.recirculation, disturbance.ambient_k);
         state.connected = branches::grant(vehicle, &demand.connections, &temperatures, &state.connected);
         vehicle.htc.circuit.pump.follow(&mut state.htc_pump, demand.htc_flow_kg_s, CONTROL_PERIOD_S);
         vehicle.chiller.circuit.pump.follow(
@@ -279,7 +283,7 @@ impl Plant {
             htc_rate_w_k: state.htc_pump.flow_kg_s * vehicle.htc.circuit.coolant_specific_heat_j_kg_k,
             chiller_rate_w_k: state.chiller_pump.flow_kg_s
                 * vehicle.chiller.circuit.coolant_specific_heat_j_kg_k,
-            ventilation: vehicle.cabin.ventilation(demand.blower_level, demand.recirculation),
+            ventilation,
             speed_m_s,
         };
         let largest = branches::largest_conductances_w_k(vehicle, &demand, &flows, &state.connected);
@@ -295,6 +299,13 @@ impl Plant {
                     CONTROL_PERIOD_S,
                 );
         }
+        let (inlet_k, coolant_k) = (temperatures.core_inlet_k, temperatures.chiller_supply_k);
+        let cooling_core_w_k = &mut branches_w_k[Branch::CabinChiller as usize];
+        *cooling_core_w_k = cooling_core_w_k.min(vehicle.cabin.cooling_core_without_ice_w_k(
+            &flows.ventilation,
+            inlet_k,
+            coolant_k,
+        ));
         Period {
             demand,
             ventilation: flows.ventilation,
@@ -418,8 +429,9 @@ impl Plant {
             },
         };
         let compressor_w = period.compressor_demand_w.min(spare_w);
-        let refrigeration =
-            self.refrigeration.step(&mut state.refrigeration, &boundary, compressor_w, step_s, part == 0);
+        let allowed =
+            CompressorAllowance { demand_w: compressor_w, available_w: spare_w, may_start: part == 0 };
+        let refrigeration = self.refrigeration.step(&mut state.refrigeration, &boundary, &allowed, step_s);
         flows[Flow::Compressor] = refrigeration.electric_power_w;
         flows[Flow::CompressorLoss] = refrigeration.loss_to_ambient_w;
         flows[Flow::Condenser] = refrigeration.condenser_heat_flow_w;
@@ -434,17 +446,18 @@ impl Plant {
         let ptc_spare_w = (spare_w - refrigeration.electric_power_w).max(0.0);
         let ptc_w = period.ptc_demand_w.min(to_cutoff_w.max(0.0));
         flows[Flow::Ptc] = ptc_w.min(ptc_spare_w);
-        let loads_shed = compressor_w < period.compressor_demand_w || flows[Flow::Ptc] < ptc_w;
+        let held_back = compressor_w < period.compressor_demand_w && refrigeration.limited_by == Limit::Power;
+        let loads_shed = held_back || flows[Flow::Ptc] < ptc_w;
 
         // Regeneration against the charge limit with this step's loads, then the battery.
-        tamper(Stage::Loads, &mut flows);
         let loads_w = flows.base_load_w() + flows[Flow::Compressor] + flows[Flow::Ptc];
         let traction = driving.unwrap_or_else(|| powertrain.brake(-wheel_w, limits.charge_w + loads_w));
         flows[Flow::Traction] = traction.electrical_power_w;
         flows[Flow::MotorLoss] = traction.motor_loss_w;
         flows[Flow::TransmissionLoss] = traction.transmission_loss_w;
         flows[Flow::FrictionBrake] = traction.friction_brake_power_w;
-        let battery = self.draw(&circuit, &limits, loads_w, &mut flows);
+        tamper(Stage::Loads, &mut flows);
+        let battery = draw(&circuit, &limits, &mut flows);
 
         // Thermal network.
         tamper(Stage::Heat, &mut flows);
@@ -482,26 +495,6 @@ impl Plant {
         }
     }
 
-    /// Draws all electrical power from the battery; what it cannot deliver goes unserved.
-    fn draw(
-        &self,
-        circuit: &CircuitStep<'_>,
-        limits: &PowerLimits,
-        loads_w: f64,
-        flows: &mut Flows,
-    ) -> BatteryStep {
-        let wanted_w = flows[Flow::Traction] + loads_w;
-        let delivered_w = wanted_w.min(limits.discharge_w);
-        let battery = circuit.draw(delivered_w);
-        // Formed from what the circuit really delivered, so that round-off of its solution is not lost.
-        flows[Flow::Unserved] =
-            if wanted_w > limits.discharge_w { wanted_w - battery.terminal_power_w } else { 0.0 };
-        flows[Flow::Battery] = battery.terminal_power_w;
-        flows[Flow::Chemical] = battery.chemical_power_w;
-        flows[Flow::BatteryLoss] = battery.loss_w;
-        battery
-    }
-
     /// Fan of the front-end exchanger, on while that is connected [W].
     fn fan_power_w(&self, state: &State, speed_m_s: f64) -> f64 {
         let connected =
@@ -520,7 +513,7 @@ impl Plant {
         let nodes = &self.assembly.nodes;
         let cabin_k = state.temperatures_k[nodes.cabin.index()];
         let lowest_k = state.temperatures_k[nodes.chiller_supply.index()] + RECOVERY_APPROACH_K;
-        let recovers = state.connected[Branch::CabinHtc as usize]
+        let recovers = period.branches_w_k[Branch::CabinHtc as usize] > 0.0
             && cabin_k > lowest_k
             && cabin_k > disturbance.ambient_k;
         let recovery_w_k = self.vehicle.cabin.exhaust_recovery_share * period.ventilation.fresh_rate_w_k;
@@ -566,4 +559,17 @@ impl Plant {
         }
         granted
     }
+}
+
+/// Draws all electrical power from the battery; what it cannot deliver goes unserved.
+fn draw(circuit: &CircuitStep<'_>, limits: &PowerLimits, flows: &mut Flows) -> BatteryStep {
+    let wanted_w = flows[Flow::Traction] + flows.base_load_w() + flows[Flow::Compressor] + flows[Flow::Ptc];
+    let battery = circuit.draw(wanted_w.min(limits.discharge_w));
+    // Formed from what the circuit really delivered, so that round-off of its solution is not lost.
+    flows[Flow::Unserved] =
+        if wanted_w > limits.discharge_w { wanted_w - battery.terminal_power_w } else { 0.0 };
+    flows[Flow::Battery] = battery.terminal_power_w;
+    flows[Flow::Chemical] = battery.chemical_power_w;
+    flows[Flow::BatteryLoss] = battery.loss_w;
+    battery
 }

@@ -136,7 +136,13 @@ impl Summary {
             htc.1 > vehicle.htc.maximum_supply_degc.kelvin() + TEMPERATURE_TOLERANCE_K && htc.1 > htc.0;
         let too_cold = chiller.1 < vehicle.chiller.minimum_supply_degc.kelvin() - TEMPERATURE_TOLERANCE_K
             && chiller.1 < chiller.0;
-        self.limit_breaches += f64::from(u8::from(too_high || too_hot || too_cold));
+        let compressor = &vehicle.refrigeration.compressor;
+        let gas_k = record.refrigeration.discharge_temperature_k;
+        let gas_too_hot =
+            gas_k > compressor.maximum_discharge_temperature_degc + ZERO_CELSIUS_K + TEMPERATURE_TOLERANCE_K;
+        let too_fast = record.refrigeration.speed_rev_s > compressor.maximum_speed_rev_s * 1.001;
+        let breached = too_high || too_hot || too_cold || gas_too_hot || too_fast;
+        self.limit_breaches += f64::from(u8::from(breached));
     }
 
     /// Energy of a flow so far [J].

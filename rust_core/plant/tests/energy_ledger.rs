@@ -1,4 +1,7 @@
 //! The energy ledger: closed at every step of anything, open as soon as one flow is wrong by 1 %.
+//!
+//! Its blind spot: what a link inside the vehicle takes from one mass and gives to another is one number, so the
+//! ledger cannot see it; the tests of the thermal network hold that both ends are served.
 
 use hp_plant::circuits::refrigeration_loop::LoopStatus;
 use hp_plant::command::{ACTUATOR_COUNT, Command};
@@ -177,51 +180,105 @@ fn ledger_closes_streams_never_cross_and_limits_hold_in_a_thousand_random_scenar
     }
 }
 
-/// A vehicle in full swing: heat pump, PTC, sources, solar gain and occupants all at work.
-fn busy_moment() -> (Experiment, State, Command, Disturbance) {
-    let overrides: Vec<_> = [
-        "scenario.strategy.transmission=true",
-        "scenario.climate.solar_gain_w=300",
-        "scenario.climate.occupants=2",
-        "scenario.initial.thermal_battery_temperature_degc=40",
-    ]
-    .iter()
-    .map(|text| library::Override::parse(text).expect("valid"))
-    .collect();
-    let experiment = Experiment::load("jeffs2019/case1-1", None, &overrides).expect("built-in scenario");
-    let mut run = experiment.start();
-    for _ in 0..60 {
-        let command = experiment.rule_based_command(&mut run);
-        experiment.step(&mut run, &command);
-    }
-    let command = experiment.rule_based_command(&mut run);
-    let disturbance = experiment.disturbance(60);
-    (experiment, run.state, command, disturbance)
+/// A moment in which some of the flows are at work.
+struct Moment {
+    experiment: Experiment,
+    state: State,
+    command: Command,
+    disturbance: Disturbance,
 }
 
-/// Residual, relative to the power in play, of a step in which one flow is falsified.
-fn residual_with(tamper: impl FnMut(Stage, &mut Flows)) -> f64 {
-    let (experiment, mut state, command, disturbance) = busy_moment();
-    experiment.plant.step_with(&mut state, &command, &disturbance, tamper).ledger.relative()
+impl Moment {
+    /// A scenario some seconds after its start.
+    fn of(scenario: &str, overrides: &[&str], after_s: usize) -> Self {
+        let overrides: Vec<_> =
+            overrides.iter().map(|text| library::Override::parse(text).expect("valid")).collect();
+        let experiment = Experiment::load(scenario, None, &overrides).expect("built-in scenario");
+        let mut run = experiment.start();
+        for _ in 0..after_s {
+            let command = experiment.rule_based_command(&mut run);
+            experiment.step(&mut run, &command);
+        }
+        let command = experiment.rule_based_command(&mut run);
+        let disturbance = experiment.disturbance(after_s);
+        Self { state: run.state, command, disturbance, experiment }
+    }
+
+    /// What happens in the next second, one flow perhaps falsified.
+    fn step(&self, tamper: impl FnMut(Stage, &mut Flows)) -> hp_plant::plant::StepRecord {
+        let mut state = self.state;
+        self.experiment.plant.step_with(&mut state, &self.command, &self.disturbance, tamper)
+    }
+}
+
+/// Heating at full swing, hard braking with a cold battery, air conditioning, and a battery at its end.
+fn moments() -> Vec<Moment> {
+    let sun = ["scenario.climate.solar_gain_w=300", "scenario.climate.occupants=2"];
+    let starved = [
+        "scenario.initial.soak_temperature_degc=-36.0",
+        "scenario.climate.ambient_temperature_degc=-36.0",
+        "scenario.initial.state_of_charge_pct=30",
+    ];
+    let warm_store =
+        ["scenario.initial.thermal_battery_temperature_degc=40", "scenario.strategy.transmission=true"];
+    vec![
+        Moment::of("jeffs2019/case1-1", &[sun[0], sun[1], warm_store[0], warm_store[1]], 60),
+        Moment::of("jeffs2019/case1-3", &[], 1740),
+        Moment::of("ours/hot-soak-plus35", &[], 120),
+        Moment::of("jeffs2019/case1-4", &starved, 14),
+    ]
+}
+
+/// Checks that falsifying each flow by 1 % is noticed in every moment in which it is at work.
+fn every_falsification_is_noticed(flows: &[Flow], falsify: impl Fn(Flow, Stage, &mut Flows)) {
+    let moments = moments();
+    for moment in &moments {
+        assert!(moment.step(|_, _| {}).ledger.relative() < TOLERANCE);
+    }
+    for &flow in flows {
+        let mut at_work = 0;
+        for moment in &moments {
+            if moment.step(|_, _| {}).flows[flow].abs() < 1.0 {
+                continue;
+            }
+            at_work += 1;
+            let residual = moment.step(|stage, flows| falsify(flow, stage, flows)).ledger.relative();
+            assert!(residual > 10.0 * TOLERANCE, "{flow:?}: {residual:e}");
+        }
+        assert!(at_work > 0, "{flow:?} is not at work in any of the moments");
+    }
 }
 
 #[test]
 fn scaling_any_load_between_battery_and_its_heat_opens_the_ledger() {
-    assert!(residual_with(|_, _| {}) < TOLERANCE);
-    for flow in [Flow::Compressor, Flow::Ptc, Flow::HtcPump, Flow::ChillerPump, Flow::Blower, Flow::Auxiliary]
-    {
-        let residual = residual_with(|stage, flows| match stage {
-            Stage::Loads => flows[flow] *= 1.01,
-            Stage::Heat => flows[flow] /= 1.01,
-            Stage::Ledger => {}
-        });
-        assert!(residual > 100.0 * TOLERANCE, "{flow:?}: {residual:e}");
-    }
+    let loads = [
+        Flow::Compressor,
+        Flow::Ptc,
+        Flow::HtcPump,
+        Flow::ChillerPump,
+        Flow::Blower,
+        Flow::Fan,
+        Flow::Auxiliary,
+    ];
+    every_falsification_is_noticed(&loads, |flow, stage, flows| match stage {
+        Stage::Loads => flows[flow] *= 1.01,
+        Stage::Heat => flows[flow] /= 1.01,
+        Stage::Ledger => {}
+    });
+}
+
+#[test]
+fn scaling_the_traction_power_that_the_battery_feeds_opens_the_ledger() {
+    every_falsification_is_noticed(&[Flow::Traction], |flow, stage, flows| {
+        if stage == Stage::Loads {
+            flows[flow] *= 1.01;
+        }
+    });
 }
 
 #[test]
 fn scaling_any_heat_source_of_the_network_opens_the_ledger() {
-    for flow in [
+    let sources = [
         Flow::Condenser,
         Flow::Evaporator,
         Flow::Ptc,
@@ -231,31 +288,23 @@ fn scaling_any_heat_source_of_the_network_opens_the_ledger() {
         Flow::TransmissionLoss,
         Flow::BatteryLoss,
         Flow::Blower,
-    ] {
-        let residual = residual_with(|stage, flows| {
-            if stage == Stage::Heat {
-                flows[flow] *= 1.01;
-            }
-        });
-        assert!(residual > 100.0 * TOLERANCE, "{flow:?}: {residual:e}");
-    }
+    ];
+    every_falsification_is_noticed(&sources, |flow, stage, flows| {
+        if stage == Stage::Heat {
+            flows[flow] *= 1.01;
+        }
+    });
 }
 
 #[test]
 fn scaling_any_flow_across_the_boundary_opens_the_ledger() {
-    let (experiment, mut state, command, disturbance) = busy_moment();
-    let record = experiment.plant.step(&mut state, &command, &disturbance);
-    for flow in hp_plant::ledger::INFLOWS.into_iter().chain(hp_plant::ledger::OUTFLOWS) {
-        if record.flows[flow].abs() < 1e-3 {
-            continue;
+    let boundary: Vec<Flow> =
+        hp_plant::ledger::INFLOWS.into_iter().chain(hp_plant::ledger::OUTFLOWS).collect();
+    every_falsification_is_noticed(&boundary, |flow, stage, flows| {
+        if stage == Stage::Ledger {
+            flows[flow] *= 1.01;
         }
-        let residual = residual_with(|stage, flows| {
-            if stage == Stage::Ledger {
-                flows[flow] *= 1.01;
-            }
-        });
-        assert!(residual > 10.0 * TOLERANCE, "{flow:?} of {} W: {residual:e}", record.flows[flow]);
-    }
+    });
 }
 
 #[test]

@@ -5,7 +5,8 @@ mod support;
 
 use hp_plant::circuits::refrigeration_cycle::RefrigerationCycle;
 use hp_plant::circuits::refrigeration_loop::{
-    Limit, LoopBoundary, LoopDemand, LoopResult, LoopStatus, RefrigerationState, SupplyLimit, WarmStart,
+    CompressorAllowance, Limit, LoopBoundary, LoopDemand, LoopResult, LoopStatus, RefrigerationState,
+    SupplyLimit, WarmStart,
 };
 use hp_plant::components::heat_exchanger::inlet_conductance_w_k;
 use hp_plant::config::Validate;
@@ -236,15 +237,15 @@ fn what_is_beyond_a_limit_already_stays_off_and_says_why() {
 fn start_waits_for_a_whole_second_and_for_the_minimum_off_time() {
     let (cycle, b) = (cycle(), boundary(30.0, 0.0, 800.0, 700.0));
     let mut state = RefrigerationState::parked();
-    assert!(!cycle.step(&mut state, &b, 1000.0, 0.1, false).running());
-    assert!(cycle.step(&mut state, &b, 1000.0, 0.1, true).running());
+    assert!(!cycle.step(&mut state, &b, &allowed(1000.0, false), 0.1).running());
+    assert!(cycle.step(&mut state, &b, &allowed(1000.0, true), 0.1).running());
     let mut on_s = 0.1;
-    while cycle.step(&mut state, &b, 0.0, 0.1, false).running() {
+    while cycle.step(&mut state, &b, &allowed(0.0, false), 0.1).running() {
         on_s += 0.1;
     }
     assert!((on_s - parameters().compressor.minimum_on_time_s).abs() < 0.01, "{on_s}");
     let mut off_s = 0.1;
-    while !cycle.step(&mut state, &b, 1000.0, 0.1, true).running() {
+    while !cycle.step(&mut state, &b, &allowed(1000.0, true), 0.1).running() {
         off_s += 0.1;
     }
     assert!((off_s - parameters().compressor.minimum_off_time_s).abs() < 0.01, "{off_s}");
@@ -258,7 +259,7 @@ fn start_loss_is_the_same_energy_at_every_step_length() {
         let mut state = RefrigerationState::parked();
         let mut loss_j = 0.0;
         for _ in 0..60 {
-            let result = cycle.step(&mut state, &b, 1000.0, step_s, true);
+            let result = cycle.step(&mut state, &b, &allowed(1000.0, true), step_s);
             let balance = result.condenser_heat_flow_w + result.loss_to_ambient_w
                 - result.evaporator_heat_flow_w
                 - result.electric_power_w;
@@ -275,21 +276,21 @@ fn speed_rises_with_the_ramp_and_falls_with_the_demand() {
     let mut state = RefrigerationState::parked();
     let mut last = parameters().compressor.minimum_speed_rev_s;
     for _ in 0..100 {
-        let result = cycle.step(&mut state, &b, 1500.0, 0.1, true);
+        let result = cycle.step(&mut state, &b, &allowed(1500.0, true), 0.1);
         assert!(result.speed_rev_s <= last + 2.0 + 1e-6);
         last = result.speed_rev_s;
     }
-    assert_eq!(cycle.step(&mut state, &b, 1500.0, 0.1, true).status, LoopStatus::Converged);
-    assert!(cycle.step(&mut state, &b, 700.0, 0.1, true).electric_power_w < 700.001);
+    assert_eq!(cycle.step(&mut state, &b, &allowed(1500.0, true), 0.1).status, LoopStatus::Converged);
+    assert!(cycle.step(&mut state, &b, &allowed(700.0, true), 0.1).electric_power_w < 700.001);
 }
 
 #[test]
 fn a_limit_that_leaves_no_room_trips_even_within_the_minimum_on_time() {
     let (cycle, mut b) = (cycle(), boundary(30.0, 0.0, 800.0, 700.0));
     let mut state = RefrigerationState::parked();
-    assert!(cycle.step(&mut state, &b, 1000.0, 1.0, true).running());
+    assert!(cycle.step(&mut state, &b, &allowed(1000.0, true), 1.0).running());
     b.cold_supply = SupplyLimit { base_k: 263.2, sensitivity_k_w: 2e-3, limit_k: 263.15 };
-    let result = cycle.step(&mut state, &b, 1000.0, 1.0, true);
+    let result = cycle.step(&mut state, &b, &allowed(1000.0, true), 1.0);
     assert_eq!((result.status, result.limited_by), (LoopStatus::Off, Limit::ColdCoolant));
     assert_eq!(state.compressor.protection_trips, 1);
 }
@@ -312,4 +313,21 @@ fn parameters_that_contradict_the_table_are_refused_by_name() {
     speed.compressor.minimum_speed_rev_s = 150.0;
     let key = RefrigerationCycle::new(speed, table()).expect_err("crossed").key;
     assert_eq!(key, "compressor.minimum_speed_rev_s");
+}
+
+fn allowed(demand_w: f64, may_start: bool) -> CompressorAllowance {
+    CompressorAllowance { demand_w, available_w: 20_000.0, may_start }
+}
+
+#[test]
+fn a_compressor_that_cannot_be_fed_does_not_start_and_does_not_hold() {
+    let cycle = cycle();
+    let b = boundary(20.0, 0.0, 800.0, 700.0);
+    let mut state = RefrigerationState::parked();
+    let scarce = |available_w: f64| CompressorAllowance { demand_w: 3000.0, available_w, may_start: true };
+    let loss_w = state.compressor.start_loss_w(&parameters().compressor, 1.0);
+    assert!(!cycle.step(&mut state, &b, &scarce(loss_w), 1.0).running());
+    let first = cycle.step(&mut state, &b, &scarce(loss_w + 1500.0), 1.0);
+    assert!(first.running() && first.electric_power_w <= loss_w + 1500.0 + 1e-6);
+    assert!(!cycle.step(&mut state, &b, &scarce(1.0), 1.0).running(), "held on without power");
 }

@@ -3,7 +3,7 @@
 use crate::command::{Connection, Demand, Member};
 use crate::components::cabin::Ventilation;
 use crate::components::heat_exchanger::inlet_conductance_w_k;
-use crate::config::coolant::{BranchShares, LoopParameters};
+use crate::config::coolant::{BranchShares, ClosedBranches, LoopParameters};
 use crate::config::vehicle::VehicleParameters;
 
 /// A pair of member and loop.
@@ -176,9 +176,18 @@ fn share(shares: &BranchShares, member: Member) -> f64 {
     }
 }
 
-/// Flow shares after the closed branches have, where so configured, left theirs to the open ones.
+/// Share of a loop's flow that its open branches have together, 1 where closed branches keep theirs.
 fn open_share(circuit: &LoopParameters, connection: Connection, connected: &[bool; BRANCH_COUNT]) -> f64 {
-    if !circuit.branch_shares.redistribute_closed {
+    let cooling = match connection {
+        Connection::Htc => connected[Branch::AmbientHtc as usize],
+        _ => connected[Branch::CabinChiller as usize],
+    };
+    let redistributes = match circuit.branch_shares.closed_branches {
+        ClosedBranches::Bypass => false,
+        ClosedBranches::Redistribute => true,
+        ClosedBranches::RedistributeInCooling => cooling,
+    };
+    if !redistributes {
         return 1.0;
     }
     let open: f64 = Branch::ALL

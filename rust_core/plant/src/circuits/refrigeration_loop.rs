@@ -44,6 +44,17 @@ pub struct LoopDemand {
     pub hold_minimum_speed: bool,
 }
 
+/// What demand and battery allow the compressor during a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CompressorAllowance {
+    /// Electrical power demanded [W].
+    pub demand_w: f64,
+    /// Electrical power that can be fed at all, start loss included [W].
+    pub available_w: f64,
+    /// A machine at rest may start; the plant allows it once a second.
+    pub may_start: bool,
+}
+
 /// How a solve ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LoopStatus {
@@ -147,20 +158,21 @@ impl LoopResult {
 impl RefrigerationCycle {
     /// One step inside the compressor's envelope: starts, stops, holds, ramps and solves.
     ///
-    /// A stopped machine starts only where `may_start` is set; the plant sets it once a second. It runs while the
+    /// A stopped machine starts only where it may. It runs while the
     /// demand covers minimum speed or its minimum time on lasts, and stops at once where a limit leaves no room.
     pub fn step(
         &self,
         state: &mut RefrigerationState,
         boundary: &LoopBoundary,
-        demand_w: f64,
+        allowed: &CompressorAllowance,
         step_s: f64,
-        may_start: bool,
     ) -> LoopResult {
         let parameters = &self.parameters.compressor;
+        let demand_w =
+            allowed.demand_w.min(allowed.available_w - state.compressor.start_loss_w(parameters, step_s));
         let wanted = demand_w >= parameters.minimum_power_w;
         let hold_minimum_speed = state.compressor.held_on(parameters);
-        let startable = may_start && wanted && state.compressor.rested(parameters);
+        let startable = allowed.may_start && wanted && state.compressor.rested(parameters);
         let mut result = if (state.compressor.running && (wanted || hold_minimum_speed)) || startable {
             let demand = LoopDemand {
                 power_limit_w: if wanted { demand_w } else { 0.0 },
@@ -171,6 +183,10 @@ impl RefrigerationCycle {
         } else {
             self.at_rest(boundary, LoopStatus::Off, Limit::Power)
         };
+        if result.electric_power_w > allowed.available_w {
+            // Not even minimum speed can be fed: the minimum time on ends here.
+            result = self.at_rest(boundary, LoopStatus::Off, Limit::Power);
+        }
         let forced = result.limited_by != Limit::Power;
         if startable && forced && !result.running() {
             // A start that a limit refuses is tried again only after another minimum time off.

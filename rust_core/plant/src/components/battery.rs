@@ -231,6 +231,8 @@ impl CircuitStep<'_> {
             .clamp(0.0, 0.5 * voltage / resistance);
         let charge_a = rate_a(&battery.charge_limit)
             .min((battery.maximum_string_voltage_v - voltage) / resistance)
+            // A full battery accepts no charge.
+            .min(self.state.charge_drawn_c / self.step_s)
             .max(0.0);
         PowerLimits {
             charge_w: battery.strings * charge_a * (voltage + resistance * charge_a),

@@ -20,11 +20,15 @@ pub struct Ventilation {
 impl CabinParameters {
     /// Air flows at a blower level (0: smallest flow, 1: largest) and a recirculated share.
     ///
-    /// Fan law: power rises with the cube of the flow.
+    /// Recirculation is held where every occupant, at least one, has fresh air. Fan law: power rises with the
+    /// cube of the flow.
     #[must_use]
-    pub fn ventilation(&self, blower_level: f64, recirculation: f64) -> Ventilation {
+    pub fn ventilation(&self, blower_level: f64, recirculation: f64, occupants: f64) -> Ventilation {
         let flow_kg_s = self.minimum_air_flow_kg_s
             + blower_level * (self.maximum_air_flow_kg_s - self.minimum_air_flow_kg_s);
+        let fresh_kg_s = self.minimum_fresh_air_per_occupant_kg_s * occupants.max(1.0);
+        let largest = (1.0 - fresh_kg_s / flow_kg_s).clamp(0.0, self.maximum_recirculation);
+        let recirculation = recirculation.min(largest);
         let supply_rate_w_k = flow_kg_s * SPECIFIC_HEAT_J_KG_K;
         Ventilation {
             supply_rate_w_k,
@@ -50,5 +54,42 @@ impl CabinParameters {
     #[must_use]
     pub fn cooling_core_conductance_w_k(&self, coolant_rate_w_k: f64, ventilation: &Ventilation) -> f64 {
         counterflow_conductance_w_k(coolant_rate_w_k, ventilation.supply_rate_w_k, self.cooling_core_ua_w_k)
+    }
+
+    /// Largest conductance of the cooling core that leaves the air warm enough not to ice it up [W/K].
+    #[must_use]
+    pub fn cooling_core_without_ice_w_k(
+        &self,
+        ventilation: &Ventilation,
+        inlet_k: f64,
+        coolant_k: f64,
+    ) -> f64 {
+        let coldest_k = self.minimum_cooled_air_degc.kelvin();
+        if coolant_k >= coldest_k {
+            return f64::INFINITY;
+        }
+        ventilation.supply_rate_w_k * (inlet_k - coldest_k).max(0.0) / (inlet_k - coolant_k).max(1e-9)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::config::library::{self, Kind};
+    use crate::config::vehicle::VehicleParameters;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn every_occupant_has_fresh_air_whatever_is_asked(
+            level in 0.0..=1.0_f64, recirculation in 0.0..=1.0_f64, occupants in 0_u32..6,
+        ) {
+            let vehicle: VehicleParameters = library::load(Kind::Vehicle, "jeffs2019", &[]).expect("built in");
+            let occupants = f64::from(occupants);
+            let air = vehicle.cabin.ventilation(level, recirculation, occupants);
+            let needed = vehicle.cabin.minimum_fresh_air_per_occupant_kg_s * occupants.max(1.0)
+                * crate::media::air::SPECIFIC_HEAT_J_KG_K;
+            prop_assert!(air.fresh_rate_w_k >= needed.min(air.supply_rate_w_k) * (1.0 - 1e-12));
+            prop_assert!(air.recirculation <= vehicle.cabin.maximum_recirculation);
+        }
     }
 }

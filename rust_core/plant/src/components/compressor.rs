@@ -96,6 +96,13 @@ impl CompressorState {
         }
     }
 
+    /// Power that the start loss takes in the next step, were the machine started now [W].
+    #[must_use]
+    pub fn start_loss_w(&self, parameters: &CompressorParameters, step_s: f64) -> f64 {
+        let pending_j = if self.running { self.start_loss_remaining_j } else { parameters.start_loss_j };
+        (parameters.start_loss_j / START_DURATION_S).min(pending_j / step_s)
+    }
+
     /// Off for long enough to start again.
     #[must_use]
     pub fn rested(&self, parameters: &CompressorParameters) -> bool {

@@ -1,5 +1,6 @@
 //! Parameters of the cabin.
 
+use super::Celsius;
 use crate::parameters;
 
 parameters! {
@@ -31,6 +32,12 @@ parameters! {
         heater_core_ua_w_k: f64 = 1.0 .. 2000.0,
         /// Cooling-core conductance [W/K].
         cooling_core_ua_w_k: f64 = 1.0 .. 2000.0,
+        /// Fresh air that each occupant (at least one) must have [kg/s] (ours).
+        minimum_fresh_air_per_occupant_kg_s: f64 = 0.0 .. 0.05,
+        /// Largest recirculated share of the supply air [-] (ours).
+        maximum_recirculation: f64 = 0.0 .. 0.95,
+        /// Air temperature below which the cooling core is not driven, because it would ice up [degC] (ours).
+        minimum_cooled_air_degc: Celsius = -5.0 .. 15.0,
         /// Share of the exhaust heat that can be recovered (paper section 2.2: up to 30 %) [-].
         exhaust_recovery_share: f64 = 0.0 .. 0.95,
         /// Sensible heat of one occupant [W].

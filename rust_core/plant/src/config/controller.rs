@@ -17,6 +17,8 @@ parameters! {
         htc_set_point_degc: Celsius = 25.0 .. 95.0,
         /// Chiller target of the compressor control (paper: -10 degC) [degC].
         chiller_set_point_degc: Celsius = -40.0 .. 20.0,
+        /// Chiller target while the cabin is cooled [degC] (ours).
+        cooling_chiller_set_point_degc: Celsius = -10.0 .. 20.0,
         /// Constant flow demand for the HTC [kg/s].
         htc_flow_kg_s: f64 = 0.001 .. 5.0,
         /// Constant flow demand for the chiller circuit [kg/s].

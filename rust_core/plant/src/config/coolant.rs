@@ -53,13 +53,24 @@ parameters! {
     }
 }
 
+/// What becomes of the flow of closed branches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ClosedBranches {
+    /// It bypasses the component; each branch keeps its share (the paper's Figures 8 and 9).
+    Bypass,
+    /// It goes to the open branches.
+    Redistribute,
+    /// Bypass, but redistribution during air conditioning (ours; the paper only heats).
+    RedistributeInCooling,
+}
+
 /// How the loop flow divides over the parallel branches.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BranchShares {
-    /// `true`: the flow of closed branches goes to the open ones; `false`: each branch keeps its share
-    /// and bypasses its component (the paper's Figures 8 and 9).
-    pub redistribute_closed: bool,
+    /// What becomes of the flow of closed branches.
+    pub closed_branches: ClosedBranches,
     /// Cabin core.
     pub cabin: f64,
     /// Battery plate.

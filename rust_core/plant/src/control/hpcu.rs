@@ -180,8 +180,12 @@ impl Hpcu {
             return Connection::Isolated;
         }
         let temperatures = plant.branch_temperatures(state, 0.0, 0.0);
-        let least_k = plant.vehicle.controls.thermal_switch.opening_difference_k;
-        let useful = |branch: Branch| temperatures.difference_k(branch) > least_k;
+        let switch = &plant.vehicle.controls.thermal_switch;
+        let useful = |branch: Branch| {
+            let connected = state.connected[branch as usize];
+            let least_k = if connected { switch.opening_difference_k } else { switch.closing_difference_k };
+            temperatures.difference_k(branch) > least_k
+        };
         if memory.thermal_battery == ThermalBatteryStage::HeatingHtc && !useful(Branch::ThermalBatteryHtc) {
             memory.thermal_battery = ThermalBatteryStage::Emptying;
         }
@@ -262,8 +266,11 @@ impl Hpcu {
             memory.battery_pid.clear();
         }
         let htc_error_k = parameters.htc_set_point_degc.kelvin() - temperature_k(state, nodes.htc_supply);
-        let chiller_error_k =
-            temperature_k(state, nodes.chiller_supply) - parameters.chiller_set_point_degc.kelvin();
+        let chiller_set_point = match mode {
+            CabinMode::Heating => parameters.chiller_set_point_degc,
+            CabinMode::Cooling => parameters.cooling_chiller_set_point_degc,
+        };
+        let chiller_error_k = temperature_k(state, nodes.chiller_supply) - chiller_set_point.kelvin();
         let htc_w = power(&mut memory.htc_pid, &parameters.htc_pid, htc_error_k);
         let chiller_w = power(&mut memory.chiller_pid, &parameters.chiller_pid, chiller_error_k);
         memory.demanded_w = cabin_w.max(battery_w).min(htc_w).min(chiller_w);
