@@ -1,12 +1,21 @@
-"""The README's snippets run as they stand."""
+"""The snippets of the README and of the page on learning run as they stand."""
 
 import re
 from pathlib import Path
 
 import pytest
 
-README = Path(__file__).parents[1] / "README.md"
-SNIPPETS = re.findall(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), flags=re.DOTALL)
+ROOT = Path(__file__).parents[1]
+README = ROOT / "README.md"
+
+
+def snippets(page: Path) -> list[str]:
+    return re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+
+
+SNIPPETS = snippets(README)
+# Of the page on learning, what needs neither long training nor another package.
+SNIPPETS += [text for text in snippets(ROOT / "docs" / "rl.md") if "ray" not in text and "learn(" not in text]
 
 
 @pytest.mark.parametrize("snippet", SNIPPETS, ids=range(len(SNIPPETS)))
