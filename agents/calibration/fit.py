@@ -184,7 +184,9 @@ def _result(problem: Problem, residuals: Residuals, shares: NDArray[np.float64])
     return Fit(
         problem=problem,
         values=values,
-        at_bound=tuple(bool(min(share, 1.0 - share) <= AT_BOUND_SHARE) for share in rounded),
+        at_bound=tuple(
+            p.at_bound(value, AT_BOUND_SHARE) for p, value in zip(problem.parameters, values, strict=True)
+        ),
         totals=residuals.totals(values),
         cost=0.5 * float(final @ final),
         evaluations=residuals.evaluations,

@@ -52,6 +52,10 @@ class Parameter:
             return math.log(value / self.low) / math.log(self.high / self.low)
         return (value - self.low) / (self.high - self.low)
 
+    def at_bound(self, value: float, share: float) -> bool:
+        """Whether a value is within a share of the plain range of a bound, whatever the search's scale."""
+        return min(value - self.low, self.high - value) <= share * (self.high - self.low)
+
     def from_share(self, share: float) -> float:
         """Value at a position in the range."""
         if self.logarithmic:

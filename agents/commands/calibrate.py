@@ -47,7 +47,7 @@ def calibrate(
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
-    """Fits parameters within published ranges to the paper's totals: many parameters, few numbers."""
+    """Fits parameters within bounds to the paper's totals: many parameters, few numbers."""
     from agents.calibration import files, held_out, report
     from agents.calibration.fit import Options, fit
     from agents.calibration.problem import load
