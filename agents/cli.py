@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from agents.commands.calibrate import calibrate
+from agents.commands.export import export
 from agents.commands.reproduce import reproduce
 from agents.commands.run import run
 from agents.commands.scenarios import scenarios
@@ -15,7 +16,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, scenarios, reproduce, calibrate):
+for command in (run, scenarios, reproduce, calibrate, export):
     app.command()(command)
 
 
