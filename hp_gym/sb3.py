@@ -93,8 +93,8 @@ class SB3VecEnv(VecEnv):
     ) -> list[Any]:
         """Calls a method of environments.
 
-        `action_masks`, `rule_based_action`, `get_state`, `set_state`, `signals`, `kpis` and `summary` are those
-        of the single environment.
+        `action_masks`, `rule_based_action`, `get_state`, `set_state`, `signals`, `kpis` and `summary` are
+        those of the single environment.
 
         Raises:
             AttributeError: There is no such method.
