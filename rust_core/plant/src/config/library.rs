@@ -35,6 +35,8 @@ pub enum Kind {
     Episodes,
     /// `rewards/*.toml`
     Reward,
+    /// `agents/*.toml`
+    Training,
 }
 
 impl Kind {
@@ -49,6 +51,7 @@ impl Kind {
             Self::Calibration => ("calibration", "toml"),
             Self::Episodes => ("episodes", "toml"),
             Self::Reward => ("rewards", "toml"),
+            Self::Training => ("agents", "toml"),
         }
     }
 
@@ -64,6 +67,7 @@ impl Kind {
             Self::Calibration => "calibration",
             Self::Episodes => "distribution of episodes",
             Self::Reward => "reward",
+            Self::Training => "training configuration",
         }
     }
 }
