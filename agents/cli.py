@@ -8,6 +8,7 @@ from agents.commands.calibrate import calibrate
 from agents.commands.reproduce import reproduce
 from agents.commands.run import run
 from agents.commands.scenarios import scenarios
+from agents.commands.tune import tune
 
 app = typer.Typer(
     name="hp-gym",
@@ -15,7 +16,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, scenarios, reproduce, calibrate):
+for command in (run, scenarios, reproduce, calibrate, tune):
     app.command()(command)
 
 
