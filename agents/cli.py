@@ -9,6 +9,8 @@ from agents.commands.export import export
 from agents.commands.reproduce import reproduce
 from agents.commands.run import run
 from agents.commands.scenarios import scenarios
+from agents.commands.train import train
+from agents.commands.tune import tune
 
 app = typer.Typer(
     name="hp-gym",
@@ -16,7 +18,15 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, scenarios, reproduce, calibrate, export):
+for command in (
+    run,
+    scenarios,
+    reproduce,
+    calibrate,
+    tune,
+    train,
+    export,
+):
     app.command()(command)
 
 
