@@ -14,7 +14,11 @@ from hp_gym.overrides import Value
 from hp_gym.policies import HpcuPolicy
 from hp_gym.vector_env import EVHeatPumpVectorEnv
 
-REWARD: Final[Mapping[str, Value]] = {"base": "balanced", "heat_left_credit": 0.25}
+REWARD: Final[Mapping[str, Value]] = {
+    "base": "balanced",
+    "discomfort_per_k_h": 10.0,
+    "heat_left_credit": 0.25,
+}
 """Also what the reference policies are trained for: arrival credit midway between 0 and 0.5; both count."""
 
 
