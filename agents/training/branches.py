@@ -1,8 +1,8 @@
 """Distribution of independent options, computed for all branches at once.
 
-Stable-baselines3 keeps one distribution a branch: for eight branches of a few options that is most of a training's
-time. Sums over the options of a branch are products with constant matrices here, so that every operation works on the
-whole row. Values are those of stable-baselines3 but for rounding.
+Stable-baselines3 keeps one distribution a branch: for eight branches of a few options that is a third of
+a training's time. Sums over the options of a branch are products with constant matrices here, so that every
+operation works on the whole row. Values are those of stable-baselines3 but for rounding.
 """
 
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ _LARGEST_EXPONENT = 80.0
 
 
 def install(model: BaseAlgorithm) -> None:
-    """Lets a model with several discrete actions use these distributions; its files stay those of the library."""
+    """Lets a model with several discrete actions use these distributions; its files stay as they were."""
     policy: Any = model.policy
     given = getattr(policy, "action_dist", None)
     if isinstance(given, MaskableMultiCategoricalDistribution):
@@ -52,14 +52,15 @@ class _Rows:
         """Takes logits; options that are masked get no probability."""
         to_options = self._of_branch.T
         if masks is None:
-            centred = logits - (logits @ self._of_branch / self._sizes) @ to_options
-            weights = torch.exp(centred.clamp(max=_LARGEST_EXPONENT))
+            mean = logits @ self._of_branch / self._sizes
+            centred = (logits - mean @ to_options).clamp(max=_LARGEST_EXPONENT)
+            weights = torch.exp(centred)
         else:
             allowed = masks.to(logits.dtype)
             logits = logits * allowed
             mean = (logits @ self._of_branch) / (allowed @ self._of_branch)
-            centred = logits - mean @ to_options
-            weights = torch.exp(centred.clamp(max=_LARGEST_EXPONENT)) * allowed
+            centred = (logits - mean @ to_options).clamp(max=_LARGEST_EXPONENT)
+            weights = torch.exp(centred) * allowed
         totals = (weights @ self._of_branch) @ to_options
         self.probabilities = weights / totals
         self.log_probabilities = centred - torch.log(totals)
