@@ -83,7 +83,7 @@ class NormalisationSettings(_Table):
     reward_scale: Positive = 1.0
     """Factor on rewards; points of the environment are of the order of a hundredth a second."""
     typical_cost: list[tuple[float, Positive]] | None = None
-    """Ambient temperatures in degC, rising, with what a trip there costs in points; rewards are divided by it.
+    """Ambient temperatures in degC, rising, and what a trip there costs in points; rewards are divided by it.
 
     A cold trip costs twenty times a mild one: without this, mild weather is learnt last. What is best for a
     trip stays the same.
@@ -108,7 +108,7 @@ class ImitationSettings(_Table):
     teacher: str = "hpcu-tuned"
     """Controller, by name or path."""
     rounds: Count = 3
-    """In the first the teacher drives, in the others mostly the policy, and the teacher says what it would do."""
+    """In the first the teacher drives, in the others mostly the policy; the teacher says what it would do."""
     environments: Count = 512
     steps: Count = 130
     """Decisions in each environment and round."""

@@ -1,14 +1,15 @@
 """The environments that a policy is trained on, and their state."""
 
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper, VecNormalize
 
-from agents.training.configuration import Training
+from agents.training.configuration import Training, TrainingConfigurationError
+from hp_gym import _core, settings
 from hp_gym.sb3 import SB3VecEnv
-
 
 AMBIENT_ROW: Final = "ambient_temperature_degc"
 
@@ -18,7 +19,6 @@ class RewardScale:
 
     Args:
         training: The configuration.
-        space: Space of one observation.
 
     Raises:
         TrainingConfigurationError: The ambient temperature is wanted and not observed.
@@ -37,7 +37,7 @@ class RewardScale:
         return self._degc is None and self._factor == 1.0
 
     def factors(self, observations: NDArray[np.float32]) -> NDArray[np.float64]:
-        """Returns the factor of each environment that gave these observations; ambient does not change on a trip."""
+        """Returns the factor of each environment that gave these observations; the same all trip long."""
         if self._degc is None:
             return np.full(len(observations), self._factor)
         share = 0.5 * (observations[:, self._row] + 1.0)
@@ -75,9 +75,9 @@ class ScaledReward(VecEnvWrapper):
 
 def _ambient_row(training: Training) -> tuple[int, float, float]:
     """Place of the ambient temperature among the observations, with its bounds in degC."""
-    arguments = training.environment.model_dump(include={"observations"})
-    rows = EVHeatPumpEnv(**arguments).observation_rows()
-    for index, (name, low, high) in enumerate(rows):
+    chosen = settings.Settings(observations=training.environment.observations)
+    episode = _core.Episode(chosen.to_json(), None, settings.DEFAULT_DISTRIBUTION)
+    for index, (name, _, low, high, _) in enumerate(episode.observation_rows()):
         if name == AMBIENT_ROW:
             return index, low, high
     message = f"normalisation.typical_cost needs {AMBIENT_ROW} among the observations"
@@ -96,8 +96,9 @@ def make(training: Training) -> VecEnv:
         threads=training.environments.threads,
         **training.environment.model_dump(),
     )
-    if normalisation.reward_scale != 1.0:
-        envs = ScaledReward(envs, normalisation.reward_scale)
+    scale = RewardScale(training)
+    if not scale.is_one:
+        envs = ScaledReward(envs, scale)
     if normalisation.observations or normalisation.rewards:
         envs = VecNormalize(
             envs,

@@ -94,7 +94,7 @@ def demonstrate(
         overrides={"scenario.controller": settings.teacher},
         **training.environment.model_dump(),
     )
-    scaling = environments.RewardScale(training, envs.single_observation_space)
+    scaling = environments.RewardScale(training)
     chance = np.random.default_rng([seed, number])
     seen, _ = envs.reset(seed=int(chance.integers(2**62)))
     envs.action_space.seed(int(chance.integers(2**31)))
