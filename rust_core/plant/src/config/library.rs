@@ -35,6 +35,8 @@ pub enum Kind {
     Episodes,
     /// `rewards/*.toml`
     Reward,
+    /// `benchmark/*.toml`
+    Benchmark,
 }
 
 impl Kind {
@@ -49,6 +51,7 @@ impl Kind {
             Self::Calibration => ("calibration", "toml"),
             Self::Episodes => ("episodes", "toml"),
             Self::Reward => ("rewards", "toml"),
+            Self::Benchmark => ("benchmark", "toml"),
         }
     }
 
@@ -64,6 +67,7 @@ impl Kind {
             Self::Calibration => "calibration",
             Self::Episodes => "distribution of episodes",
             Self::Reward => "reward",
+            Self::Benchmark => "benchmark",
         }
     }
 }
