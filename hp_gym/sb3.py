@@ -93,8 +93,8 @@ class SB3VecEnv(VecEnv):
     ) -> list[Any]:
         """Calls a method of environments.
 
-        `action_masks`, `rule_based_action`, `get_state`, `set_state`, `signals` and `kpis` are those of the
-        single environment.
+        `action_masks`, `rule_based_action`, `get_state`, `set_state`, `signals`, `kpis` and `summary` are
+        those of the single environment.
 
         Raises:
             AttributeError: There is no such method.
@@ -112,7 +112,7 @@ class SB3VecEnv(VecEnv):
             case "set_state":
                 self.venv.set_state([method_args[0]] * len(chosen), chosen)
                 return [None] * len(chosen)
-            case "signals" | "kpis":
+            case "signals" | "kpis" | "summary":
                 return [getattr(self.venv, method_name)(index, **method_kwargs) for index in chosen]
         message = f"the environments have no method `{method_name}` that can be called one by one"
         raise AttributeError(message)

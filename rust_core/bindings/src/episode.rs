@@ -85,8 +85,19 @@ pub fn kpis<'py>(py: Python<'py>, terms: &Terms, weights: &RewardParameters) -> 
     Ok(dict)
 }
 
+/// Totals of a trip by name.
+pub fn summary<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    if let Some(run) = episode.run() {
+        for (name, value) in run.summary.values() {
+            dict.set_item(name, value)?;
+        }
+    }
+    Ok(dict)
+}
+
 /// A command as an action of an environment: nearest options, or values.
-pub fn as_action<'py>(py: Python<'py>, setup: &Setup, command: &Command) -> Bound<'py, PyAny> {
+fn as_action<'py>(py: Python<'py>, setup: &Setup, command: &Command) -> Bound<'py, PyAny> {
     let rows = setup.actions.rows();
     if setup.continuous {
         let values: Vec<f32> = rows.iter().map(|&row| command.0[row]).collect();
@@ -252,13 +263,7 @@ impl Episode {
     /// Totals of the trip so far, as `simulate` gives them.
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.require_begun(py)?;
-        let dict = PyDict::new(py);
-        if let Some(run) = self.inner.run() {
-            for (name, value) in run.summary.values() {
-                dict.set_item(name, value)?;
-            }
-        }
-        Ok(dict)
+        summary(py, &self.inner)
     }
 
     fn get_state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {

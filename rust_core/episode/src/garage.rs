@@ -2,6 +2,7 @@
 
 use hp_plant::config::library::Override;
 use hp_plant::config::scenario::ScenarioParameters;
+use hp_plant::control::hpcu::Hpcu;
 use hp_plant::drive_cycle::DriveCycle;
 use hp_plant::error::PlantResult;
 use hp_plant::plant::Plant;
@@ -104,7 +105,8 @@ impl Garage {
             plant: Arc::clone(&origin.plant),
             cycle,
             controller: origin.controller.clone(),
-            hpcu: origin.hpcu.clone(),
+            hpcu: Hpcu::of(&origin.rules, &trip.scenario),
+            rules: Arc::clone(&origin.rules),
         })
     }
 }

@@ -37,6 +37,15 @@ pub enum Actions<'a> {
     Values(&'a [f32]),
 }
 
+/// Where actions of all environments go, row by row.
+#[derive(Debug)]
+pub enum ActionsMut<'a> {
+    /// Options.
+    Levels(&'a mut [i64]),
+    /// Normalised values.
+    Values(&'a mut [f32]),
+}
+
 /// Where the results of a step go, one entry an environment.
 #[derive(Debug)]
 pub struct Results<'a> {
@@ -262,6 +271,51 @@ impl Vector {
             }
         }
         Ok(events)
+    }
+
+    /// Writes what the rule-based controllers would do next with the selected rows, environment by environment;
+    /// nothing where no trip has begun.
+    pub fn rule_based_actions(&mut self, actions: ActionsMut<'_>) {
+        let Some(first) = self.episodes.first() else { return };
+        let width = first.setup().actions.rows().len();
+        self.start_threads();
+        match actions {
+            ActionsMut::Levels(levels) => self.on_each(levels, width, |episode, levels| {
+                if let Some(command) = episode.rule_based_command() {
+                    let rows = episode.setup().actions.rows().iter();
+                    for (level, &row) in levels.iter_mut().zip(rows) {
+                        *level = action::nearest_option(row, command.0[row]) as i64;
+                    }
+                }
+            }),
+            ActionsMut::Values(values) => self.on_each(values, width, |episode, values| {
+                if let Some(command) = episode.rule_based_command() {
+                    for (value, &row) in values.iter_mut().zip(episode.setup().actions.rows()) {
+                        *value = command.0[row];
+                    }
+                }
+            }),
+        }
+    }
+
+    /// Works on every environment and its entries of an array.
+    fn on_each<T: Send>(
+        &mut self,
+        entries: &mut [T],
+        width: usize,
+        work: impl Fn(&mut Episode, &mut [T]) + Sync,
+    ) {
+        let pairs = |(episode, entries): (&mut Episode, &mut [T])| work(episode, entries);
+        match &self.pool {
+            Some(pool) if self.threads > 1 => pool.threads.install(|| {
+                self.episodes
+                    .par_iter_mut()
+                    .zip(entries.par_chunks_mut(width))
+                    .with_min_len(BATCH)
+                    .for_each(pairs);
+            }),
+            _ => self.episodes.iter_mut().zip(entries.chunks_mut(width)).for_each(pairs),
+        }
     }
 
     fn start_threads(&mut self) {

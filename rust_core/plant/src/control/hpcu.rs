@@ -6,9 +6,9 @@
 use super::pid::ResetPid;
 use crate::circuits::branches::Branch;
 use crate::command::{Connection, Demand, Member};
-use crate::config::controller::HpcuParameters;
+use crate::config::controller::{Controller, HpcuParameters};
 use crate::config::coolant::PidParameters;
-use crate::config::scenario::{BatteryTreatment, ClimateControl, Strategy};
+use crate::config::scenario::{BatteryTreatment, ClimateControl, ScenarioParameters, Strategy};
 use crate::numerics::thermal_network::Node;
 use crate::plant::{CONTROL_PERIOD_S, Plant};
 use crate::state::State;
@@ -69,6 +69,14 @@ pub struct Hpcu {
 }
 
 impl Hpcu {
+    /// The controller of a scenario.
+    #[must_use]
+    pub fn of(controller: &Controller, scenario: &ScenarioParameters) -> Self {
+        let ambient = scenario.climate.ambient_temperature_degc;
+        let (parameters, strategy) = controller.at(ambient, &scenario.strategy);
+        Self { parameters, strategy }
+    }
+
     /// Memory at the start of a run.
     #[must_use]
     pub fn awake(&self, plant: &Plant, state: &State) -> HpcuState {
@@ -98,7 +106,9 @@ impl Hpcu {
         let mode = self.cabin_mode(plant, state, memory);
         let mut demand = Demand {
             connections: self.connections(plant, state, memory, mode),
-            ptc_allowed: self.strategy.ptc && mode == CabinMode::Heating,
+            ptc_allowed: self.strategy.ptc
+                && mode == CabinMode::Heating
+                && self.cabin_error_k(plant, state, mode) >= self.parameters.ptc_from_deviation_k,
             recirculation: match mode {
                 CabinMode::Heating => self.parameters.heating_recirculation,
                 CabinMode::Cooling => self.parameters.cooling_recirculation,
