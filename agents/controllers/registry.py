@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 DEFAULTS: Final = ("off", "random", "ptc-only", *rules.FILES, policy.REFERENCE)
 """Controllers of the comparison by name."""
 
-POLICY_SUFFIXES: Final = (".safetensors", ".zip")
+POLICY_SUFFIXES: Final = (".safetensors", ".onnx", ".zip")
 
 
 def resolve(name: str, *, seed: int = 0, seeds: Collection[int] | None = None) -> list[Controller]:
     """Finds a controller.
 
     Args:
-        name: One of `DEFAULTS`, the path of a policy (.safetensors) or of a controller file (.toml), or
+        name: One of `DEFAULTS`, the path of a policy (.safetensors, .onnx) or of a controller file (.toml), or
             `module:Class`.
         seed: Seed of the controller `random`.
         seeds: Training seeds of the reference policies to take; all by default.
@@ -53,7 +53,7 @@ def resolve(name: str, *, seed: int = 0, seeds: Collection[int] | None = None) -
         return [python_class.load(name)]
     known = ", ".join(DEFAULTS)
     message = (
-        f"unknown controller `{name}`; available: {known}, the path of a policy (.safetensors) "
+        f"unknown controller `{name}`; available: {known}, the path of a policy (.safetensors, .onnx) "
         "or of a controller file (.toml), or module:Class"
     )
     raise ControllerError(message)
