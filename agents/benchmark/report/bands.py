@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import plotly.graph_objects as go
 
-from agents.benchmark.report.layout import PAPER, difference_path
+from agents.benchmark.report.layout import PAPER, band_title, difference_path
 from agents.benchmark.report.pareto import HIDDEN
 
 if TYPE_CHECKING:
@@ -39,7 +39,10 @@ ENERGY: Final = Difference(
     "energy_difference_pct", "energy_difference_ci95", "Attributable energy against hpcu, 95 % intervals", "%"
 )
 DISCOMFORT: Final = Difference(
-    "discomfort_difference_k", "discomfort_difference_ci95", "Mean discomfort against hpcu, 95 % intervals", "K"
+    "discomfort_difference_k",
+    "discomfort_difference_ci95",
+    "Mean discomfort against hpcu, 95 % intervals",
+    "K",
 )
 
 
@@ -55,7 +58,11 @@ def bars(layout: Layout, kpi: str, title: str, unit: str, looks: Mapping[str, St
     """
     figure = go.Figure()
     for name in layout.controllers:
-        values = [layout.kpi(name, kpi, band) for band in layout.bands]
+        # What a trip used until it stranded cannot be compared.
+        values = [
+            None if layout.kpi(name, "stranded", band) else layout.kpi(name, kpi, band)
+            for band in layout.bands
+        ]
         figure.add_bar(
             x=_names(layout),
             y=[None if value is None else round(value, 4) for value in values],
@@ -82,11 +89,11 @@ def differences(layout: Layout, what: Difference, looks: Mapping[str, Style]) ->
         known = [
             (band, value, ends)
             for band in layout.bands
-            if (value := layout.summary.number(*difference_path(name, band), what.value)) is not None
+            if (value := layout.summary.number(*difference_path(name, band, what.value))) is not None
             and (ends := layout.interval(name, band, what.interval)) is not None
         ]
         figure.add_scatter(
-            x=[f"{html.escape(band)}" for band, _, _ in known],
+            x=[html.escape(band_title(band)) for band, _, _ in known],
             y=[round(value, 4) for _, value, _ in known],
             error_y={
                 "type": "data",
@@ -97,9 +104,11 @@ def differences(layout: Layout, what: Difference, looks: Mapping[str, Style]) ->
                 "width": 4,
             },
             mode="markers",
+            cliponaxis=False,
             marker={"color": looks[name].colour, "symbol": looks[name].symbol, "size": 8},
             name=html.escape(name),
-            visible="legendonly" if name in HIDDEN else True,
+            # Far from the others where there is nothing to heat.
+            visible="legendonly" if name in {*HIDDEN, "ptc-only"} else True,
             hovertemplate="%{x}: %{y} " + what.unit,
         )
     figure.add_hline(y=0.0, line={"color": looks[PAPER].colour, "width": 1.5})
@@ -111,7 +120,7 @@ def differences(layout: Layout, what: Difference, looks: Mapping[str, Style]) ->
 
 
 def _names(layout: Layout) -> list[str]:
-    return [html.escape(band) for band in layout.bands]
+    return [html.escape(band_title(band)) for band in layout.bands]
 
 
 def _ambient_axis() -> dict[str, str]:

@@ -76,7 +76,9 @@ ELECTRICITY: Final = Diagram(
 
 HEAT: Final = Diagram(
     [
-        Flow("ambient_chiller_heat_flow_w", "Ambient air", "Chiller loop", ("Chiller loop", "To ambient air")),
+        Flow(
+            "ambient_chiller_heat_flow_w", "Ambient air", "Chiller loop", ("Chiller loop", "To ambient air")
+        ),
         Flow("motor_chiller_heat_flow_w", "Motor, inverter", "Chiller loop", ("Chiller loop", "To motor")),
         Flow(
             "transmission_chiller_heat_flow_w",
@@ -85,7 +87,9 @@ HEAT: Final = Diagram(
             ("Chiller loop", "To transmission"),
         ),
         Flow("battery_chiller_heat_flow_w", "Battery", "Chiller loop", ("Chiller loop", "To battery")),
-        Flow("exhaust_recovery_heat_flow_w", "Exhaust air", "Chiller loop", ("Chiller loop", "To exhaust air")),
+        Flow(
+            "exhaust_recovery_heat_flow_w", "Exhaust air", "Chiller loop", ("Chiller loop", "To exhaust air")
+        ),
         Flow("cabin_chiller_heat_flow_w", "Cabin", "Chiller loop", ("Chiller loop", "To cabin")),
         Flow(
             "thermal_battery_chiller_heat_flow_w",
@@ -94,8 +98,18 @@ HEAT: Final = Diagram(
             ("Chiller loop", "To thermal battery"),
         ),
         Flow("chiller_pump_power_w", "Pumps", "Chiller loop"),
-        Flow("chiller_supply_hose_heat_flow_w", "Chiller loop", "To ambient air", ("Ambient air", "Chiller loop")),
-        Flow("chiller_return_hose_heat_flow_w", "Chiller loop", "To ambient air", ("Ambient air", "Chiller loop")),
+        Flow(
+            "chiller_supply_hose_heat_flow_w",
+            "Chiller loop",
+            "To ambient air",
+            ("Ambient air", "Chiller loop"),
+        ),
+        Flow(
+            "chiller_return_hose_heat_flow_w",
+            "Chiller loop",
+            "To ambient air",
+            ("Ambient air", "Chiller loop"),
+        ),
         Flow("evaporator_heat_flow_w", "Chiller loop", "Refrigerant"),
         Flow("compressor_power_w", "Compressor", "Refrigerant"),
         Flow("compressor_loss_w", "Refrigerant", "Compressor losses"),

@@ -11,7 +11,12 @@ from agents.benchmark.report.layout import kpi_path
 if TYPE_CHECKING:
     from agents.benchmark.report.layout import Comparison, Layout
 
-WINS, LOSES, OPEN, NONE = "needs less energy than", "needs more energy than", "is not shown to differ from", ""
+WINS, LOSES, OPEN, NONE = (
+    "needs less energy than",
+    "needs more energy than",
+    "is not shown to differ from",
+    "",
+)
 _CREDITS: Final[tuple[tuple[str, str], ...]] = (
     ("0", "without credit for the heat left at arrival"),
     ("0.5", "with half of it credited"),
@@ -22,7 +27,7 @@ def verdict(layout: Layout, comparison: Comparison) -> str:
     """Returns what may be said of a gain: that of both arrival credits, or nothing is shown."""
     signs = set()
     for credit, _ in _CREDITS:
-        path = (*comparison.path, "by_credit", credit)
+        path = comparison.at("by_credit", credit)
         low = layout.summary.number(*path, "ci95", 0)
         high = layout.summary.number(*path, "ci95", 1)
         if layout.summary.number(*path, "attributable_energy_pct") is None:
@@ -46,8 +51,8 @@ def sentence(layout: Layout, comparison: Comparison) -> Markup:
         )
     parts = [
         Markup("{} % ({}) {}").format(
-            show(layout, *comparison.path, "by_credit", credit, "attributable_energy_pct"),
-            interval(layout, *comparison.path, "by_credit", credit, "ci95"),
+            show(layout, *comparison.at("by_credit", credit, "attributable_energy_pct")),
+            interval(layout, *comparison.at("by_credit", credit, "ci95")),
             words,
         )
         for credit, words in _CREDITS
@@ -78,9 +83,9 @@ def sentences(layout: Layout) -> list[Markup]:
         if name not in {"off", "random"}
     ]
     return [
-        Markup("<strong>No learned controller took part</strong>, so there is no gain to report. Rules: {}.").format(
-            Markup("; ").join(points)
-        )
+        Markup(
+            "<strong>No learned controller took part</strong>, so there is no gain to report. Rules: {}."
+        ).format(Markup("; ").join(points))
     ]
 
 
@@ -99,10 +104,10 @@ def interval(layout: Layout, *path: str | int) -> Markup:
 
 
 def _why_not(layout: Layout, comparison: Comparison) -> Markup | str:
-    stranded = (*comparison.path, "stranded_trips")
+    stranded = comparison.at("stranded_trips")
     if any(layout.summary.number(*stranded, who) for who in ("controller", "rules")):
         return Markup("trips ended before arrival ({} of its own, {} of the rules)").format(
             layout.summary.show(*stranded, "controller", decimals=0),
             layout.summary.show(*stranded, "rules", decimals=0),
         )
-    return layout.summary.get(*comparison.path, "matched") or "the rules have no setting to compare with"
+    return layout.summary.get(*comparison.at("matched")) or "the rules have no setting to compare with"

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from agents.benchmark.report.shown import Summary
+from agents.benchmark.report.shown import MINUS, Summary
+from agents.controllers.policy import ABLATION
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -33,17 +35,27 @@ class Comparison:
     controller: str
     rival: str
 
+    def at(self, *names: str | int) -> tuple[str | int, ...]:
+        """Returns the place of something within the gain."""
+        return (*self.path, *names)
+
 
 class Layout:
     """Reads a summary.
 
     Args:
         data: What `summary.json` holds.
+
+    Attributes:
+        summary: The same, place by place.
+        controllers: Names of all controllers but ablations.
+        grid_bands: Facts of all climate bands by name.
+        bands: Names of those that have trips.
     """
 
     def __init__(self, data: Mapping[str, Any]) -> None:
         self.summary = Summary(data)
-        self.controllers: list[str] = list(data["controllers"])
+        self.controllers: list[str] = [name for name in data["controllers"] if not name.startswith(ABLATION)]
         self.grid_bands: Mapping[str, Any] = data["grid"]["bands"]
         self.bands: list[str] = [band for band, facts in self.grid_bands.items() if facts["scenarios"]]
 
@@ -58,8 +70,7 @@ class Layout:
 
     def interval(self, controller: str, band: str, name: str) -> tuple[float, float] | None:
         """Returns the ends of an interval of a controller's difference to the paper's rules; None without."""
-        path = (*difference_path(controller, band), name)
-        low, high = self.summary.number(*path, 0), self.summary.number(*path, 1)
+        low, high = (self.summary.number(*difference_path(controller, band, name), end) for end in (0, 1))
         return None if low is None or high is None else (low, high)
 
     def seeds(self, controller: str) -> list[int]:
@@ -80,11 +91,16 @@ class Layout:
         return next(fitting, controller_key)
 
 
+def band_title(band: str) -> str:
+    """Returns the name of a climate band with a true minus and in words: `-10..0` is `−10 to 0`."""
+    return re.sub(r"-(?=\d)", MINUS, band).replace("..", " to ")
+
+
 def kpi_path(controller: str, name: str, band: str | None = None) -> tuple[str, ...]:
     """Returns the place of a KPI, over the headline's bands where no band is given."""
     return ("controllers", controller, *(() if band is None else ("bands", band)), name)
 
 
-def difference_path(controller: str, band: str) -> tuple[str, ...]:
-    """Returns the place of a controller's difference to the paper's rules in a band."""
-    return ("controllers", controller, "bands", band, "vs_hpcu")
+def difference_path(controller: str, band: str, name: str) -> tuple[str, ...]:
+    """Returns the place of one of a controller's differences to the paper's rules in a band."""
+    return ("controllers", controller, "bands", band, "vs_hpcu", name)

@@ -45,7 +45,9 @@ def render(benchmark: Benchmark) -> str:
     """Returns the report as text; see `write_report`."""
     facts = layout.Layout(plain(benchmark.summary))
     front_families = benchmark.fronts["family"].unique().tolist()
-    looks = styles([*facts.controllers, *(family for family in front_families if family not in facts.controllers)])
+    looks = styles(
+        [*facts.controllers, *(family for family in front_families if family not in facts.controllers)]
+    )
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(_TEMPLATES),
         autoescape=True,
@@ -53,7 +55,7 @@ def render(benchmark: Benchmark) -> str:
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
-    environment.filters["json"] = _json
+    environment.filters |= {"json": _json, "band_title": layout.band_title}
     return environment.get_template("report.html").render(
         facts=facts,
         summary=facts.summary,

@@ -19,7 +19,9 @@ HIDDEN: Final = ("off", "random")
 """Far from all others, so not drawn before somebody asks for them in the legend."""
 
 
-def pareto(layout: Layout, runs: pd.DataFrame, fronts: pd.DataFrame, credit: float, looks: Mapping[str, Style]) -> go.Figure:
+def pareto(
+    layout: Layout, runs: pd.DataFrame, fronts: pd.DataFrame, credit: float, looks: Mapping[str, Style]
+) -> go.Figure:
     """Draws mean energy per trip against mean discomfort over the bands of the headline.
 
     Args:
@@ -33,7 +35,9 @@ def pareto(layout: Layout, runs: pd.DataFrame, fronts: pd.DataFrame, credit: flo
     for family, settings in fronts.groupby("family", sort=False):
         _draw_front(figure, str(family), settings[settings["stranded_trips"] == 0], credit, looks)
     for name in layout.controllers:
-        seeds = _seed_points(runs[(runs["controller"] == name) & runs["band"].isin(layout.headline_bands)], credit)
+        seeds = _seed_points(
+            runs[(runs["controller"] == name) & runs["band"].isin(layout.headline_bands)], credit
+        )
         _draw_controller(figure, layout, name, seeds, credit, looks[name])
     credited = f" less {credit:g} × heat left at arrival" if credit else ""
     figure.update_layout(
@@ -78,7 +82,7 @@ def _draw_front(
         y=_short(energy_kwh),
         customdata=settings[["cabin_set_point_degc", "htc_set_point_degc"]].round(1).to_numpy().tolist(),
         mode="markers",
-        marker={"color": colour, "size": 4, "opacity": 0.35},
+        marker={"color": colour, "size": 5, "opacity": 0.4},
         name=f"{name}, other set points",
         legendgroup=f"front {name}",
         showlegend=False,
@@ -103,6 +107,8 @@ def _draw_controller(
     heat_left_kwh = layout.kpi(name, "heat_left_kwh")
     if discomfort_k is None or energy_kwh is None or heat_left_kwh is None:
         return
+    stranded = bool(layout.kpi(name, "stranded"))
+    symbol = f"{look.symbol}-open" if stranded else look.symbol
     shown: dict[str, Any] = {"visible": "legendonly" if name in HIDDEN else True}
     if len(seeds) > 1:
         figure.add_scatter(
@@ -123,9 +129,9 @@ def _draw_controller(
         mode="markers",
         marker={
             "color": look.colour,
-            "symbol": look.symbol,
+            "symbol": symbol,
             "size": 13,
-            "line": {"color": "#ffffff", "width": 1.5},
+            "line": {"color": look.colour if stranded else "#ffffff", "width": 2.0},
         },
         name=html.escape(name),
         legendgroup=html.escape(name),

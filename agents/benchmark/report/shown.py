@@ -59,7 +59,9 @@ class Summary:
         if value is None:
             return Markup(NOTHING)
         text = decimal(value, decimals, signed=signed)
-        return Markup('<data data-summary="{}" value="{}">{}</data>').format(pointer(*path), repr(value), text)
+        return Markup('<data data-summary="{}" value="{}">{}</data>').format(
+            pointer(*path), repr(value), text
+        )
 
 
 def pointer(*path: str | int) -> str:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 MEMBERS: Final = ("cabin", "battery", "motor", "transmission", "ambient", "thermal_battery")
 """What can be connected to a coolant loop, in the order of the timelines."""
 
-STEPS_S: Final = (1, 2, 5, 10, 20, 60)
+STEPS_S: Final = (2, 5, 10, 20, 60)
 """Seconds between the points that are drawn."""
 
 POINTS: Final = 60_000

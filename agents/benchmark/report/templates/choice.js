@@ -26,8 +26,8 @@ function show() {
   const narrow = section.clientWidth < NARROW_PX;
   draw_pair("plot-pair", traces, runs, names, narrow || chosen("view") === "over");
   for (const side of ["left", "right"]) {
-    draw_energy(`plot-electricity-${side}`, runs[side].electricity, `Electricity: ${plain(names[side])}`);
-    draw_energy(`plot-heat-${side}`, runs[side].heat, `Heat: ${plain(names[side])}`);
+    draw_energy(`plot-electricity-${side}`, runs[side].electricity, `Electricity: ${plain(names[side])}`, 330);
+    draw_energy(`plot-heat-${side}`, runs[side].heat, `Heat: ${plain(names[side])}`, 420);
   }
   Object.assign(section.dataset, { scenario, left: names.left, right: names.right, narrow });
 }

@@ -7,7 +7,7 @@ const NODE_COLOURS = [
 const colour_of = (name) => (NODE_COLOURS.find(([pattern]) => pattern.test(name)) || [null, "#8c7aa9"])[1];
 const faint = (colour) => `${colour}66`;
 
-function draw_energy(place, links, title) {
+function draw_energy(place, links, title, height) {
   const names = [...new Set(links.flatMap(([source, target]) => [source, target]))];
   const sum = (name, end) => links.filter((link) => link[end] === name).reduce((total, link) => total + link[2], 0);
   const through = (name) => Math.max(sum(name, 0), sum(name, 1));
@@ -18,6 +18,6 @@ function draw_energy(place, links, title) {
       pad: 14, thickness: 12, line: { width: 0 } },
     link: { source: links.map(([source]) => number.get(source)), target: links.map(([, target]) => number.get(target)),
       value: links.map(([, , kwh]) => kwh), color: links.map(([source]) => faint(colour_of(source))) },
-  }], { title: { text: title, x: 0, xref: "paper", font: { size: 15 } }, font: { ...FONT, size: 12 }, height: 440,
+  }], { title: { text: title, x: 0, xref: "paper", font: { size: 15 } }, font: { ...FONT, size: 12 }, height,
     margin: { l: 4, r: 4, t: 40, b: 12 }, paper_bgcolor: "#fff" }, CONFIG);
 }

@@ -4,7 +4,7 @@ function draw_figure(place, figure) {
     font: FONT, paper_bgcolor: "#fff", plot_bgcolor: "#fff", height: 430,
     margin: { l: 10, r: 10, t: 44, b: 10 },
     title: { x: 0, xref: "paper", font: { size: 15 } },
-    legend: { orientation: "h", y: -0.2, yanchor: "top", x: 0, font: { size: 12 } },
+    legend: { orientation: "h", y: -0.26, yanchor: "top", x: 0, font: { size: 12 } },
     hoverlabel: { font: FONT },
     xaxis: AXIS, yaxis: AXIS,
   }, figure.layout);
