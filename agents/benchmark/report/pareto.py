@@ -38,8 +38,8 @@ def pareto(
         seeds = _seed_points(
             runs[(runs["controller"] == name) & runs["band"].isin(layout.headline_bands)], credit
         )
-        _draw_controller(figure, layout, name, seeds, credit, looks[name])
-    credited = f" less {credit:g} × heat left at arrival" if credit else ""
+        _draw_controller(figure, layout, name, seeds, credit, look=looks[name])
+    credited = f" less {credit:g} \N{MULTIPLICATION SIGN} heat left at arrival" if credit else ""
     figure.update_layout(
         xaxis_title="mean discomfort, K",
         yaxis_title="kWh per trip",
@@ -80,7 +80,7 @@ def _draw_front(
     figure.add_scatter(
         x=_short(discomfort_k),
         y=_short(energy_kwh),
-        customdata=settings[["cabin_set_point_degc", "htc_set_point_degc"]].round(1).to_numpy().tolist(),
+        customdata=settings[["cabin_set_point_degc", "htc_set_point_degc"]].round(1).to_numpy(),
         mode="markers",
         marker={"color": colour, "size": 5, "opacity": 0.4},
         name=f"{name}, other set points",
@@ -100,7 +100,7 @@ def _draw_front(
 
 
 def _draw_controller(
-    figure: go.Figure, layout: Layout, name: str, seeds: pd.DataFrame, credit: float, look: Style
+    figure: go.Figure, layout: Layout, name: str, seeds: pd.DataFrame, credit: float, *, look: Style
 ) -> None:
     discomfort_k = layout.kpi(name, "discomfort_k")
     energy_kwh = layout.kpi(name, "attributable_energy_kwh")
