@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from agents.commands.benchmark import benchmark
 from agents.commands.calibrate import calibrate
 from agents.commands.reproduce import reproduce
 from agents.commands.run import run
@@ -15,7 +16,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, scenarios, reproduce, calibrate):
+for command in (benchmark, run, scenarios, reproduce, calibrate):
     app.command()(command)
 
 
