@@ -69,7 +69,7 @@ def drive(
     """Drives one controller over scenarios; see `drive_all`."""
     groups: dict[str, list[int]] = defaultdict(list)
     for place, scenario in enumerate(scenarios):
-        groups[scenario.cycle].append(place)
+        groups[scenario.cycle.name].append(place)
     rows: list[Row] = [{} for _ in scenarios]
     # Trips of a cycle take equally long, so that no environment waits for others.
     for places in groups.values():

@@ -36,6 +36,16 @@ class Band(BaseModel):
     """Whether the headline's figures are of it."""
 
 
+class Cycle(BaseModel):
+    """A drive cycle, driven whole."""
+
+    model_config = _CHECKED
+
+    name: str
+    least_battery_temperature_degc: float = -50.0
+    """Temperature that the battery is kept at until the start where the rest is colder."""
+
+
 class Variant(BaseModel):
     """How a trip begins and what the weather adds; soaked at ambient temperature where nothing is given."""
 
@@ -70,7 +80,7 @@ class GridFile(BaseModel):
     description: str
     scenario: str
     """Scenario that gives vehicle, strategy and heat requests."""
-    cycles: Annotated[tuple[str, ...], Field(min_length=1)]
+    cycles: Annotated[tuple[Cycle, ...], Field(min_length=1)]
     ambient_temperatures_degc: Annotated[tuple[float, ...], Field(min_length=1)]
     variants: Annotated[tuple[Variant, ...], Field(min_length=1)]
     bands: Annotated[tuple[Band, ...], Field(min_length=1)]
@@ -85,7 +95,7 @@ class Scenario:
 
     name: str
     base: str
-    cycle: str
+    cycle: Cycle
     ambient_temperature_degc: float
     band: Band
     variant: Variant
@@ -100,11 +110,13 @@ class Scenario:
         }
         if variant.parked_in_sun_k:
             initial["cabin_temperature_degc"] = soak_degc + variant.parked_in_sun_k
+        if self.cycle.least_battery_temperature_degc > soak_degc:
+            initial["battery_temperature_degc"] = self.cycle.least_battery_temperature_degc
         return tomlkit.dumps(
             {
                 "base": self.base,
-                "description": f"Held out: {self.cycle} at {ambient_degc:g} degC, {variant.name}",
-                "cycle": self.cycle,
+                "description": f"Held out: {self.cycle.name} at {ambient_degc:g} degC, {variant.name}",
+                "cycle": self.cycle.name,
                 "climate": {
                     "ambient_temperature_degc": ambient_degc,
                     "solar_gain_w": variant.solar_gain_w,
@@ -166,7 +178,7 @@ def parse(name: str, tables: Mapping[str, Any]) -> Grid:
         file = GridFile.model_validate(tables)
     except ValidationError as error:
         raise GridError(one_line(error)) from error
-    _known("cycles", file.cycles, _core.names("drive cycle"))
+    _known("cycles", [cycle.name for cycle in file.cycles], _core.names("drive cycle"))
     _known("scenario", [file.scenario], _core.names("scenario"))
     lows_degc = [band.low_degc for band in file.bands]
     if lows_degc != sorted(set(lows_degc)):
@@ -212,9 +224,9 @@ def _band(bands: Sequence[Band], ambient_degc: float) -> Band:
     return fitting[-1]
 
 
-def _file_name(cycle: str, ambient_degc: float, variant: Variant) -> str:
+def _file_name(cycle: Cycle, ambient_degc: float, variant: Variant) -> str:
     sign = "minus" if ambient_degc < 0.0 else ""
-    return f"{sign}{abs(ambient_degc):g}-{cycle}-{variant.name}"
+    return f"{sign}{abs(ambient_degc):g}-{cycle.name}-{variant.name}"
 
 
 def _once(what: str, names: Iterable[str]) -> None:
