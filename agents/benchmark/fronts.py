@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import tomlkit
 
-from agents.controllers import Controller
 from agents.controllers.rules import rules
 from hp_gym import _core
 from hp_gym.files import atomic_write
@@ -19,11 +18,12 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from agents.benchmark.grid import Front
+    from agents.controllers import Controller
 
 CABIN_KEY: Final = "cabin_set_point_degc"
 HTC_KEY: Final = "htc_set_point_degc"
 
-# Where the plant limits the HTC itself a set point has no further effect; colder than the cabin it heats nothing.
+# Above, the plant limits the HTC itself; below, it could hardly heat a cabin.
 _HTC_RANGE_DEGC: Final = (30.0, 90.0)
 _CABIN_RANGE_DEGC: Final = (10.0, 30.0)
 

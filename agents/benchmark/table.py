@@ -64,7 +64,9 @@ def _bands(summary: Mapping[str, Any]) -> Table:
     table = _table("By ambient temperature: energy in kWh/100 km, discomfort in K")
     table.add_column("controller", no_wrap=True, max_width=14)
     for name in shown:
-        table.add_column(f"{name}\n°C" if bands[name]["headline"] else f"({name}\n°C)", justify="right", no_wrap=True)
+        table.add_column(
+            f"{name}\n°C" if bands[name]["headline"] else f"({name}\n°C)", justify="right", no_wrap=True
+        )
     for controller, kpis in summary["controllers"].items():
         cells = []
         for name in shown:
@@ -98,7 +100,7 @@ def _gains(summary: Mapping[str, Any]) -> Table:
 def _remarks(summary: Mapping[str, Any]) -> Iterable[str]:
     told = {**summary["gains"], **(summary["ablations"] or {})}
     if any(gain.get("matched") == MOST_COMFORTABLE for gain in told.values()):
-        yield "* More comfortable than every setting of these rules, so compared with their most comfortable one."
+        yield "* More comfortable than any setting of these rules: compared with their most comfortable."
     for name, gain in told.items():
         if any(gain["stranded_trips"].values()):
             yield f"{name}: no figure, because trips stranded: {gain['stranded_trips']}."
@@ -110,7 +112,9 @@ def _remarks(summary: Mapping[str, Any]) -> Iterable[str]:
 
 
 def _table(title: str) -> Table:
-    return Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False, padding=(0, 1))
+    return Table(
+        title=title, title_justify="left", title_style="bold", box=None, pad_edge=False, padding=(0, 1)
+    )
 
 
 def _signed(value: float | None, decimals: int) -> str:

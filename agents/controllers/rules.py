@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 import hp_gym
 from agents.controllers.controller import Act, Controller, ControllerError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from hp_gym.overrides import Value
     from hp_gym.vector_env import EVHeatPumpVectorEnv
 
@@ -60,7 +61,9 @@ def shipped(name: str) -> Controller:
     """
     files = hp_gym.names("controller")
     if name not in files:
-        message = f"controller `{name}` has no file configs/controllers/{name}.toml; there are {', '.join(files)}"
+        message = (
+            f"controller `{name}` has no file configs/controllers/{name}.toml; there are {', '.join(files)}"
+        )
         raise ControllerError(message)
     return rules(name)
 
