@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 FILES: Final = ("hpcu", "hpcu-best-mode", "hpcu-tuned")
 """Rule-based controllers of the comparison, each a file in configs/controllers."""
 
-# The PTC warms the cabin's air itself: no coolant loop is needed.
+# The PTC warms the high temperature circuit; what it warms there is to reach the cabin alone.
 _NO_HEAT_PUMP: Final[Mapping[str, Value]] = {
     "scenario.strategy.heat_pump": False,
     "scenario.strategy.battery": "isolate",
@@ -69,5 +69,5 @@ def shipped(name: str) -> Controller:
 
 
 def ptc_only() -> Controller:
-    """The paper's rules without heat pump: PTC heater, no coolant loop, no air conditioning."""
+    """The paper's rules without heat pump: the PTC heats the cabin, and there is no air conditioning."""
     return rules("ptc-only", "hpcu", _NO_HEAT_PUMP)
