@@ -6,9 +6,12 @@ import typer
 
 from agents.commands.benchmark import benchmark
 from agents.commands.calibrate import calibrate
+from agents.commands.export import export
 from agents.commands.reproduce import reproduce
 from agents.commands.run import run
 from agents.commands.scenarios import scenarios
+from agents.commands.train import train
+from agents.commands.tune import tune
 
 app = typer.Typer(
     name="hp-gym",
@@ -16,7 +19,16 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (benchmark, run, scenarios, reproduce, calibrate):
+for command in (
+    benchmark,
+    run,
+    scenarios,
+    reproduce,
+    calibrate,
+    tune,
+    train,
+    export,
+):
     app.command()(command)
 
 
