@@ -87,7 +87,9 @@ def test_a_controller_file_is_a_controller(tmp_path: Path) -> None:
     path.write_text('base = "hpcu"\ncabin_set_point_degc = 15.0\n', encoding="utf-8")
     (controller,) = resolve(str(path))
     assert controller.name == "mild"
-    cabins_degc = [driven(each, steps=900).signals(0)["cabin_temperature_degc"] for each in (str(path), "hpcu")]
+    cabins_degc = [
+        driven(each, steps=900).signals(0)["cabin_temperature_degc"] for each in (str(path), "hpcu")
+    ]
     assert cabins_degc[0] < 17.0 < cabins_degc[1]
 
 

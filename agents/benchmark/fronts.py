@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import tomllib
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import tomlkit
@@ -15,7 +16,6 @@ from hp_gym.files import atomic_write
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from pathlib import Path
 
     from agents.benchmark.grid import Front
     from agents.controllers import Controller
@@ -65,7 +65,7 @@ def settings(front: Front, folder: Path) -> list[Setting]:
     made = []
     for cabin_k, htc_k in itertools.product(front.cabin_offsets_k, front.htc_offsets_k):
         moved = _moved(values, cabin_k, htc_k)
-        name = f"{front.family}-cabin{cabin_k:+g}-htc{htc_k:+g}"
+        name = f"{Path(front.family).stem}-cabin{cabin_k:+g}-htc{htc_k:+g}"
         path = folder / f"{name}.toml"
         # Tables of ambient bands replace those of the base as a whole, so only what moved need be written.
         changed = {key: value for key, value in moved.items() if value != values[key]}
