@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 import hp_gym
-from agents.benchmark import files, grid, run
-from agents.benchmark.results import Benchmark
+from agents.benchmark import drive, files, grid, run
 from agents.controllers import DEFAULTS, Controller, policy, resolve
 from agents.controllers.rules import FILES
 
@@ -20,6 +19,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rich.console import Console
+
+    from agents.benchmark.results import Benchmark
 
 
 @dataclass(frozen=True)
@@ -79,13 +80,15 @@ def carry_out(request: Request, console: Console) -> Done:
         with _bar(console) as bar:
             task = bar.add_task("trips", total=None)
 
-            def begin(total: int) -> run.Progress:
+            def begin(total: int) -> drive.Progress:
                 bar.update(task, total=total)
                 return lambda done: bar.advance(task, done)
 
             benchmark, front_runs = run.run(plan, folder, begin)
         files.write(benchmark, front_runs, folder)
-        simulated_s = sum(float(runs["duration_s"].sum()) for runs in (benchmark.runs, front_runs) if len(runs))
+        simulated_s = sum(
+            float(runs["duration_s"].sum()) for runs in (benchmark.runs, front_runs) if len(runs)
+        )
         wall_s = perf_counter() - began_s
         files.write_json(
             {

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 import numpy as np
 
 from agents.benchmark.kpis import measure
+from agents.controllers import ControllerError
 from hp_gym.vector_env import EVHeatPumpVectorEnv
 
 if TYPE_CHECKING:
@@ -26,11 +27,14 @@ Row: TypeAlias = "dict[str, Any]"
 Progress: TypeAlias = "Callable[[int], None]"
 """Told of trips that have ended."""
 
+Task: TypeAlias = "tuple[Controller, Sequence[Scenario]]"
+"""A controller and the scenarios that it drives."""
+
 _ENV_SEED: Final = 0
 
 
 def drive_all(
-    tasks: Sequence[tuple[Controller, Sequence[Scenario]]],
+    tasks: Sequence[Task],
     files: Mapping[str, Path],
     progress: Progress = lambda _: None,
     threads: int | None = None,
@@ -47,8 +51,7 @@ def drive_all(
         For each controller a row of KPIs for each of its scenarios, in their order.
 
     Raises:
-        ConfigurationError: A controller's environment cannot be made.
-        ValueError: A controller's actions do not fit.
+        ControllerError: A controller's environment cannot be made, or its actions do not fit.
     """
     workers = threads or os.cpu_count() or 1
     with ThreadPoolExecutor(workers) as pool:
@@ -66,15 +69,23 @@ def drive(
     files: Mapping[str, Path],
     progress: Progress = lambda _: None,
 ) -> list[Row]:
-    """Drives one controller over scenarios; see `drive_all`."""
+    """Drives one controller over scenarios; see `drive_all`.
+
+    Raises:
+        ControllerError: Its environment cannot be made, or its actions do not fit.
+    """
     groups: dict[str, list[int]] = defaultdict(list)
     for place, scenario in enumerate(scenarios):
-        groups[scenario.cycle].append(place)
+        groups[scenario.cycle.name].append(place)
     rows: list[Row] = [{} for _ in scenarios]
     # Trips of a cycle take equally long, so that no environment waits for others.
     for places in groups.values():
         chosen = [scenarios[place] for place in places]
-        for place, row in zip(places, _drive_group(controller, chosen, files, progress), strict=True):
+        try:
+            driven = _drive_group(controller, chosen, files, progress)
+        except (ValueError, TypeError) as error:
+            raise ControllerError(f"controller `{controller.name}`: {error}") from error
+        for place, row in zip(places, driven, strict=True):
             rows[place] = row
     return rows
 
@@ -95,7 +106,9 @@ def _drive_group(
             for index in np.flatnonzero(terminated).tolist():
                 # A stranded trip ends early; its environment drives on from the start, unseen.
                 if not rows[index]:
-                    rows[index] = measure(controller, scenarios[index], env, index, infos["end_reason"][index])
+                    rows[index] = measure(
+                        controller, scenarios[index], env, index, infos["end_reason"][index]
+                    )
                     left -= 1
                     progress(1)
     finally:

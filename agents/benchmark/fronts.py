@@ -5,25 +5,25 @@ from __future__ import annotations
 import itertools
 import tomllib
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import tomlkit
 
-from agents.controllers import Controller
 from agents.controllers.rules import rules
 from hp_gym import _core
 from hp_gym.files import atomic_write
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from pathlib import Path
 
     from agents.benchmark.grid import Front
+    from agents.controllers import Controller
 
 CABIN_KEY: Final = "cabin_set_point_degc"
 HTC_KEY: Final = "htc_set_point_degc"
 
-# Where the plant limits the HTC itself a set point has no further effect; colder than the cabin it heats nothing.
+# Above, the plant limits the HTC itself; below, it could hardly heat a cabin.
 _HTC_RANGE_DEGC: Final = (30.0, 90.0)
 _CABIN_RANGE_DEGC: Final = (10.0, 30.0)
 
@@ -65,7 +65,7 @@ def settings(front: Front, folder: Path) -> list[Setting]:
     made = []
     for cabin_k, htc_k in itertools.product(front.cabin_offsets_k, front.htc_offsets_k):
         moved = _moved(values, cabin_k, htc_k)
-        name = f"{front.family}-cabin{cabin_k:+g}-htc{htc_k:+g}"
+        name = f"{Path(front.family).stem}-cabin{cabin_k:+g}-htc{htc_k:+g}"
         path = folder / f"{name}.toml"
         # Tables of ambient bands replace those of the base as a whole, so only what moved need be written.
         changed = {key: value for key, value in moved.items() if value != values[key]}

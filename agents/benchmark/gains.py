@@ -24,8 +24,8 @@ def gain(
 ) -> dict[str, Any]:
     """Compares a controller with rules over the same trips; negative is less.
 
-    A stranded trip has neither energy nor discomfort that could be compared. If the controller or the rules at
-    their own set points stranded, there is no gain; settings of the front that stranded are left out.
+    A stranded trip has neither energy nor discomfort that could be compared. If the controller or the rules
+    at their own set points stranded, there is no gain; settings of the front that stranded are left out.
 
     Args:
         agent: The controller, one row a training seed.
@@ -38,9 +38,10 @@ def gain(
         The figures that docs/benchmark.md lists under `gains`.
     """
     stranded = {"controller": int(agent.stranded.sum()), "rules": int(rules.stranded.sum())}
-    complete = front.runs(~front.stranded.any(axis=1))
+    complete = front.runs(np.flatnonzero(front.stranded.sum(axis=1) == 0.0))
     if any(stranded.values()) or not len(complete.energy_kwh):
-        return {"attributable_energy_pct": None, "ci95": None, "discomfort_k": None, "stranded_trips": stranded}
+        none: dict[str, Any] = dict.fromkeys(("attributable_energy_pct", "ci95", "discomfort_k"))
+        return none | {"stranded_trips": stranded}
     agent_k = _discomfort_k(agent, resamples)
     rules_k = _discomfort_k(rules, resamples)
     front_k = resamples.each_run(complete.discomfort_k_h) / resamples.each_run(complete.occupied_h)

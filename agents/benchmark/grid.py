@@ -1,47 +1,92 @@
 """The held-out trips: a file in configs/benchmark becomes explicit scenarios."""
 
-from __future__ import annotations
-
 import itertools
 import tomllib
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from pathlib import Path
+from typing import Annotated, Any, Final
 
+import tomlkit
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from agents.validation import one_line
 from hp_gym import _core
 from hp_gym.files import atomic_write
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-    from pathlib import Path
-
 DEFAULT_GRID: Final = "heldout-v0"
+
+_CHECKED: Final = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+_Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9 ._-]+$")]
 
 
 class GridError(ValueError):
     """A grid's file or a value in it is not right."""
 
 
-@dataclass(frozen=True)
-class Band:
+class Band(BaseModel):
     """A climate: ambient temperatures from `low_degc` up to but without the next band's."""
 
-    name: str
+    model_config = _CHECKED
+
+    name: _Name
     low_degc: float
     headline: bool
+    """Whether the headline's figures are of it."""
 
 
-@dataclass(frozen=True)
-class Variant:
-    """How a trip begins and what the weather adds; soaked at ambient temperature where nothing is given."""
+class Cycle(BaseModel):
+    """A drive cycle, driven whole."""
+
+    model_config = _CHECKED
 
     name: str
-    occupants: int
-    state_of_charge_pct: float
+    least_battery_temperature_degc: float = -50.0
+    """Temperature that the battery is kept at until the start where the rest is colder."""
+
+
+class Variant(BaseModel):
+    """How a trip begins and what the weather adds; soaked at ambient temperature where nothing is given."""
+
+    model_config = _CHECKED
+
+    name: _Name
+    occupants: Annotated[int, Field(ge=1)]
+    state_of_charge_pct: Annotated[float, Field(gt=0.0, le=100.0)]
     ambient_low_degc: float = -50.0
     ambient_high_degc: float = 60.0
     soak_temperature_degc: float | None = None
-    solar_gain_w: float = 0.0
-    parked_in_sun_k: float = 0.0
+    solar_gain_w: Annotated[float, Field(ge=0.0)] = 0.0
+    parked_in_sun_k: Annotated[float, Field(ge=0.0)] = 0.0
+    """By how much the cabin is warmer than all else."""
+
+
+class Front(BaseModel):
+    """Set points that a family of rules is driven with, as offsets to its own; all pairs of them."""
+
+    model_config = _CHECKED
+
+    family: _Name
+    cabin_offsets_k: Annotated[tuple[float, ...], Field(min_length=1)]
+    htc_offsets_k: Annotated[tuple[float, ...], Field(min_length=1)]
+
+
+class GridFile(BaseModel):
+    """A grid as its file gives it."""
+
+    model_config = _CHECKED
+
+    description: str
+    scenario: str
+    """Scenario that gives vehicle, strategy and heat requests."""
+    cycles: Annotated[tuple[Cycle, ...], Field(min_length=1)]
+    ambient_temperatures_degc: Annotated[tuple[float, ...], Field(min_length=1)]
+    variants: Annotated[tuple[Variant, ...], Field(min_length=1)]
+    bands: Annotated[tuple[Band, ...], Field(min_length=1)]
+    shown: tuple[str, ...] = ()
+    """Scenarios whose trajectories are kept."""
+    fronts: tuple[Front, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -50,7 +95,7 @@ class Scenario:
 
     name: str
     base: str
-    cycle: str
+    cycle: Cycle
     ambient_temperature_degc: float
     band: Band
     variant: Variant
@@ -59,32 +104,27 @@ class Scenario:
         """The trip as a scenario file that `hp-gym run` takes."""
         variant, ambient_degc = self.variant, self.ambient_temperature_degc
         soak_degc = ambient_degc if variant.soak_temperature_degc is None else variant.soak_temperature_degc
-        lines = [
-            f'base = "{self.base}"',
-            f'description = "Held out: {self.cycle} at {ambient_degc:g} degC, {variant.name}"',
-            f'cycle = "{self.cycle}"',
-            "",
-            "[climate]",
-            f"ambient_temperature_degc = {ambient_degc!r}",
-            f"solar_gain_w = {variant.solar_gain_w!r}",
-            f"occupants = {variant.occupants}",
-            "",
-            "[initial]",
-            f"soak_temperature_degc = {soak_degc!r}",
-            f"state_of_charge_pct = {variant.state_of_charge_pct!r}",
-        ]
+        initial = {
+            "soak_temperature_degc": soak_degc,
+            "state_of_charge_pct": variant.state_of_charge_pct,
+        }
         if variant.parked_in_sun_k:
-            lines.append(f"cabin_temperature_degc = {soak_degc + variant.parked_in_sun_k!r}")
-        return "\n".join(lines) + "\n"
-
-
-@dataclass(frozen=True)
-class Front:
-    """Set points that a family of rules is driven with, as offsets to its own."""
-
-    family: str
-    cabin_offsets_k: tuple[float, ...]
-    htc_offsets_k: tuple[float, ...]
+            initial["cabin_temperature_degc"] = soak_degc + variant.parked_in_sun_k
+        if self.cycle.least_battery_temperature_degc > soak_degc:
+            initial["battery_temperature_degc"] = self.cycle.least_battery_temperature_degc
+        return tomlkit.dumps(
+            {
+                "base": self.base,
+                "description": f"Held out: {self.cycle.name} at {ambient_degc:g} degC, {variant.name}",
+                "cycle": self.cycle.name,
+                "climate": {
+                    "ambient_temperature_degc": ambient_degc,
+                    "solar_gain_w": variant.solar_gain_w,
+                    "occupants": variant.occupants,
+                },
+                "initial": initial,
+            }
+        )
 
 
 @dataclass(frozen=True)
@@ -132,129 +172,64 @@ def parse(name: str, tables: Mapping[str, Any]) -> Grid:
     """Makes a grid of the tables of its file.
 
     Raises:
-        GridError: A key is missing, unknown or of the wrong kind, or scenarios or bands are not told apart.
+        GridError: A value is missing, unknown or not allowed, or scenarios or bands are not told apart.
     """
-    top = _checked("file", tables, _TOP)
-    bands = tuple(Band(**_checked("bands", table, _BAND)) for table in top["bands"])
-    variants = [Variant(**_checked("variants", table, _VARIANT)) for table in top["variants"]]
-    fronts = tuple(
-        Front(
-            table["family"],
-            tuple(_numbers("cabin_offsets_k", table["cabin_offsets_k"])),
-            tuple(_numbers("htc_offsets_k", table["htc_offsets_k"])),
-        )
-        for table in (_checked("fronts", table, _FRONT) for table in top.get("fronts", []))
-    )
-    if not bands or list(bands) != sorted(bands, key=lambda band: band.low_degc):
-        raise GridError("`bands` must be there, from cold to warm")
-    for what, names in (("bands", bands), ("variants", variants)):
-        _once(what, (item.name for item in names))
-    _once("fronts", (front.family for front in fronts))
-    cycles = _known_cycles(top["cycles"])
-    ambients_degc = _numbers("ambient_temperatures_degc", top["ambient_temperatures_degc"])
+    try:
+        file = GridFile.model_validate(tables)
+    except ValidationError as error:
+        raise GridError(one_line(error)) from error
+    _known("cycles", [cycle.name for cycle in file.cycles], _core.names("drive cycle"))
+    _known("scenario", [file.scenario], _core.names("scenario"))
+    lows_degc = [band.low_degc for band in file.bands]
+    if lows_degc != sorted(set(lows_degc)):
+        raise GridError("`bands` must go from cold to warm")
     scenarios = tuple(
         Scenario(
-            _file_name(cycle, ambient_degc, variant), top["scenario"], cycle, ambient_degc,
-            _band(bands, ambient_degc), variant,
+            name=_file_name(cycle, ambient_degc, variant),
+            base=file.scenario,
+            cycle=cycle,
+            ambient_temperature_degc=ambient_degc,
+            band=_band(file.bands, ambient_degc),
+            variant=variant,
         )
-        for cycle, ambient_degc, variant in itertools.product(cycles, ambients_degc, variants)
+        for cycle, ambient_degc, variant in itertools.product(
+            file.cycles, file.ambient_temperatures_degc, file.variants
+        )
         if variant.ambient_low_degc <= ambient_degc <= variant.ambient_high_degc
-    )  # fmt: skip
-    names = [scenario.name for scenario in scenarios]
-    _once("scenarios", names)
-    shown = tuple(top.get("shown", []))
+    )
     if not scenarios:
         raise GridError("there is no scenario: every variant excludes every ambient temperature")
-    for scenario in shown:
-        if scenario not in names:
-            raise GridError(f"`shown` names `{scenario}`, which is no scenario, unlike for example `{names[0]}`")
-    return Grid(name, top["description"], bands, scenarios, shown, fronts)
+    names = [scenario.name for scenario in scenarios]
+    for what, those in (
+        ("bands", [band.name for band in file.bands]),
+        ("fronts", [front.family for front in file.fronts]),
+        ("scenarios", names),
+    ):
+        _once(what, those)
+    _known("shown", file.shown, names)
+    return Grid(name, file.description, file.bands, scenarios, file.shown, file.fronts)
 
 
-_TOP: Final[Mapping[str, type]] = {
-    "description": str,
-    "scenario": str,
-    "cycles": list,
-    "ambient_temperatures_degc": list,
-    "shown?": list,
-    "variants": list,
-    "bands": list,
-    "fronts?": list,
-}
-_BAND: Final[Mapping[str, type]] = {"name": str, "low_degc": float, "headline": bool}
-_FRONT: Final[Mapping[str, type]] = {"family": str, "cabin_offsets_k": list, "htc_offsets_k": list}
-_VARIANT: Final[Mapping[str, type]] = {
-    "name": str,
-    "occupants": int,
-    "state_of_charge_pct": float,
-    "ambient_low_degc?": float,
-    "ambient_high_degc?": float,
-    "soak_temperature_degc?": float,
-    "solar_gain_w?": float,
-    "parked_in_sun_k?": float,
-}
+def _known(what: str, wanted: Iterable[str], known: Sequence[str]) -> None:
+    for name in wanted:
+        if name not in known:
+            others = f" and {len(known) - 8} more" if len(known) > 8 else ""
+            raise GridError(f"`{what}` names `{name}`; available: {', '.join(known[:8])}{others}")
 
 
-def _checked(where: str, table: object, keys: Mapping[str, type]) -> dict[str, Any]:
-    """The values of a table by key; a key that ends with `?` may be absent."""
-    if not isinstance(table, dict):
-        raise GridError(f"`{where}` holds {table!r}, but must hold tables")
-    kinds = {key.removesuffix("?"): kind for key, kind in keys.items()}
-    for key in table:
-        if key not in kinds:
-            raise GridError(f"{where}: unknown `{key}`, expected one of {', '.join(kinds)}")
-    values = {}
-    for key, kind in keys.items():
-        name = key.removesuffix("?")
-        if name not in table:
-            if not key.endswith("?"):
-                raise GridError(f"{where}: `{name}` is missing")
-            continue
-        value = table[name]
-        if kind is float and isinstance(value, int) and not isinstance(value, bool):
-            value = float(value)
-        if type(value) is not kind:
-            raise GridError(f"{where}: `{name}` is {value!r}, but must be of type {kind.__name__}")
-        values[name] = value
-    if values.get("occupants", 1) < 1:
-        raise GridError(f"{where}: `occupants` is {values['occupants']}, but somebody must drive")
-    return values
-
-
-def _numbers(where: str, values: Iterable[object]) -> list[float]:
-    numbers = []
-    for value in values:
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise GridError(f"`{where}` holds {value!r}, but must hold numbers")
-        numbers.append(float(value))
-    if not numbers:
-        raise GridError(f"`{where}` is empty")
-    return numbers
-
-
-def _known_cycles(cycles: Iterable[str]) -> list[str]:
-    known = _core.names("drive cycle")
-    for cycle in cycles:
-        if cycle not in known:
-            raise GridError(f"`cycles` names `{cycle}`; available: {', '.join(known)}")
-    return list(cycles)
-
-
-def _band(bands: Iterable[Band], ambient_degc: float) -> Band:
+def _band(bands: Sequence[Band], ambient_degc: float) -> Band:
     fitting = [band for band in bands if band.low_degc <= ambient_degc]
     if not fitting:
         raise GridError(f"no band holds an ambient temperature of {ambient_degc:g} degC")
     return fitting[-1]
 
 
-def _file_name(cycle: str, ambient_degc: float, variant: Variant) -> str:
+def _file_name(cycle: Cycle, ambient_degc: float, variant: Variant) -> str:
     sign = "minus" if ambient_degc < 0.0 else ""
-    return f"{sign}{abs(ambient_degc):g}-{cycle}-{variant.name}"
+    return f"{sign}{abs(ambient_degc):g}-{cycle.name}-{variant.name}"
 
 
 def _once(what: str, names: Iterable[str]) -> None:
-    seen: set[str] = set()
-    for name in names:
-        if name in seen:
-            raise GridError(f"`{what}` has `{name}` twice")
-        seen.add(name)
+    for name, count in Counter(names).items():
+        if count > 1:
+            raise GridError(f"`{what}` has `{name}` {count} times")

@@ -67,7 +67,7 @@ def measure(
         "seed": controller.seed,
         "scenario": scenario.name,
         "variant": scenario.variant.name,
-        "cycle": scenario.cycle,
+        "cycle": scenario.cycle.name,
         "ambient_temperature_degc": scenario.ambient_temperature_degc,
         "band": scenario.band.name,
         "end_reason": end_reason,

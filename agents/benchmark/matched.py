@@ -1,7 +1,7 @@
 """Energy at matched comfort: what rules need to be as comfortable as another controller is.
 
-Rules with other set points are a front of points (discomfort, energy), both over the same trips. The energy that
-the front needs at a discomfort d is the least of
+Rules with other set points are a front of points (discomfort, energy), both over the same trips. The energy
+that the front needs at a discomfort d is the least of
 
 - a mixture of two settings whose discomforts enclose d, one on some trips and the other on the others, and
 - any setting that is at least as comfortable.

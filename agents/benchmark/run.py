@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-    from agents.benchmark.drive import Progress
+    from agents.benchmark.drive import Progress, Task
     from agents.benchmark.fronts import Setting
     from agents.benchmark.grid import Grid
     from agents.controllers import Controller
@@ -60,9 +60,8 @@ def run(
         The results, and the runs of the rules with other set points, one row each.
 
     Raises:
-        ControllerError: Two controllers have the same name and seed, or the paper's HPCU is missing.
-        ConfigurationError: A controller's environment cannot be made.
-        ValueError: A controller's actions do not fit.
+        ControllerError: Two controllers have the same name and seed, the paper's HPCU is missing, an
+            environment cannot be made, or actions do not fit.
         OSError: The folder cannot be written to.
     """
     import pandas as pd
@@ -78,7 +77,7 @@ def run(
         for setting in settings(front, folder / "controllers")
     ]
     heating = [scenario for scenario in grid.scenarios if scenario.band.headline]
-    tasks = [(controller, grid.scenarios) for controller in plan.controllers]
+    tasks: list[Task] = [(controller, grid.scenarios) for controller in plan.controllers]
     tasks += [(setting.controller, heating) for setting in rivals]
     progress = begin(sum(len(scenarios) for _, scenarios in tasks))
     rows = drive_all(tasks, files, progress)

@@ -40,7 +40,7 @@ class Trips:
         """The same for some of the scenarios."""
         return Trips(*(getattr(self, name)[:, scenarios] for name in self.__dataclass_fields__))
 
-    def runs(self, rows: NDArray[np.bool_] | NDArray[np.intp]) -> Trips:
+    def runs(self, rows: NDArray[np.intp]) -> Trips:
         """The same for some of the runs."""
         return Trips(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
 
@@ -51,7 +51,12 @@ class Trips:
 
 @dataclass(frozen=True, eq=False)
 class Resamples:
-    """How often each scenario and each training seed is drawn: one row a resample, the first one is as it is."""
+    """How often scenarios and training seeds are drawn: one row a resample, the first one as they are.
+
+    Attributes:
+        scenarios: Times that each scenario is drawn.
+        generator_seed: Seed of the draws.
+    """
 
     scenarios: NDArray[np.float64]
     generator_seed: int
@@ -69,11 +74,14 @@ class Resamples:
     def mean_over_runs(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Sum over scenarios of the mean over training seeds, one value a resample."""
         shares = self.seeds(len(values))
-        return np.einsum("bs,bs->b", self.scenarios, np.einsum("bk,ks->bs", shares, values))
+        means: NDArray[np.float64] = np.einsum("bk,ks->bs", shares, values)
+        sums: NDArray[np.float64] = np.einsum("bs,bs->b", self.scenarios, means)
+        return sums
 
     def each_run(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Sum over scenarios of each run, one row a resample, one column a run."""
-        return np.einsum("bs,ps->bp", self.scenarios, values)
+        sums: NDArray[np.float64] = np.einsum("bs,ps->bp", self.scenarios, values)
+        return sums
 
 
 def trips(runs: pd.DataFrame, keys: Sequence[str], scenarios: Sequence[str]) -> Trips:

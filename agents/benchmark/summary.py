@@ -9,7 +9,6 @@ import numpy as np
 
 from agents.benchmark import gains, statistics
 from agents.benchmark.results import KPIS
-from agents.controllers.rules import FILES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -65,8 +64,8 @@ class Evidence:
 def all_gains(evidence: Evidence, learned: Sequence[str]) -> dict[str, Any]:
     """Gains of learned controllers over each family of rules, `<controller>_vs_<rules>`.
 
-    `_vs_hpcu` is the paper's controller, whose user moves the cabin set point only; `_vs_hpcu_any_htc` lets its
-    HTC set point be moved too, which the paper's controller cannot.
+    `_vs_hpcu` is the paper's controller, whose user moves the cabin set point only; `_vs_hpcu_any_htc` lets
+    its HTC set point be moved too, which the paper's controller cannot.
     """
     found = {}
     fronts = evidence.front_runs
@@ -178,9 +177,3 @@ def grid_facts(grid: Grid) -> dict[str, Any]:
         "headline_scenarios": sum(scenario.band.headline for scenario in grid.scenarios),
         "bands": dict(bands),
     }
-
-
-def rules_first(names: Sequence[str]) -> list[str]:
-    """Names with those of rules that every comparison needs put first where they are missing."""
-    needed = [name for name in (PAPER, FILES[-1]) if name not in names]
-    return [*needed, *names]

@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 def load(reference: str) -> Controller:
     """Makes a controller of a class, looked for in the working folder too.
 
-    The class takes no arguments and has `predict(observations)`, which returns the actions of all environments,
-    one row each (or a pair that begins with them, as models of stable-baselines3 do). It may have `environment`,
-    a mapping with arguments of `EVHeatPumpVectorEnv`, and `begin(env)`, called with the vector environment before
-    each set of trips. One instance drives all sets.
+    The class takes no arguments and has `predict(observations)`, which returns the actions of all
+    environments, one row each (or a pair that begins with them, as models of stable-baselines3 do). It may
+    have `environment`, a dict with arguments of `EVHeatPumpVectorEnv`, and `begin(env)`, called with the
+    vector environment before each set of trips. One instance drives all sets.
 
     Args:
         reference: `module:Class`.
@@ -48,7 +48,10 @@ def load(reference: str) -> Controller:
             starter(env)
 
         def act(observations: object) -> Action:
-            answer = predict(observations)
+            try:
+                answer = predict(observations)
+            except Exception as error:  # whatever a stranger's class raises
+                raise ControllerError(f"predict failed: {type(error).__name__}: {error}") from error
             actions: Action = np.asarray(answer[0] if isinstance(answer, tuple) else answer)
             return actions
 
@@ -68,7 +71,9 @@ def _instance(reference: str) -> object:
     except ImportError as error:
         raise ControllerError(f"controller `{reference}`: cannot import `{module_name}`: {error}") from error
     except AttributeError as error:
-        raise ControllerError(f"controller `{reference}`: module `{module_name}` has no `{class_name}`") from error
+        raise ControllerError(
+            f"controller `{reference}`: module `{module_name}` has no `{class_name}`"
+        ) from error
     try:
         return found()
     except Exception as error:  # whatever a stranger's class raises

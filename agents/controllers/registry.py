@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -9,11 +10,12 @@ from agents.controllers import plain, policy, python_class, rules
 from agents.controllers.controller import Controller, ControllerError
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Callable, Collection
 
 DEFAULTS: Final = ("off", "random", "ptc-only", *rules.FILES, policy.REFERENCE)
 """Controllers of the comparison by name."""
 
+RULES_SUFFIX: Final = ".toml"
 POLICY_SUFFIXES: Final = (".safetensors", ".onnx", ".zip")
 
 
@@ -21,8 +23,8 @@ def resolve(name: str, *, seed: int = 0, seeds: Collection[int] | None = None) -
     """Finds a controller.
 
     Args:
-        name: One of `DEFAULTS`, the path of a policy (.safetensors, .onnx) or of a controller file (.toml), or
-            `module:Class`.
+        name: One of `DEFAULTS`, the path of a policy (.safetensors, .onnx) or of a controller file (.toml),
+            or `module:Class`.
         seed: Seed of the controller `random`.
         seeds: Training seeds of the reference policies to take; all by default.
 
@@ -32,28 +34,25 @@ def resolve(name: str, *, seed: int = 0, seeds: Collection[int] | None = None) -
     Raises:
         ControllerError: There is none of that name, or it cannot be used; the message says what there is.
     """
-    if name == "off":
-        return [plain.off()]
-    if name == "random":
-        return [plain.random(seed)]
-    if name == "ptc-only":
-        return [rules.ptc_only()]
-    if name in rules.FILES:
-        return [rules.shipped(name)]
+    makers: dict[str, Callable[[], Controller]] = {
+        "off": plain.off,
+        "random": lambda: plain.random(seed),
+        "ptc-only": rules.ptc_only,
+        **{file: partial(rules.shipped, file) for file in rules.FILES},
+    }
     if name == policy.REFERENCE:
         return policy.reference(seeds)
-    suffix = Path(name).suffix
-    if suffix in {*POLICY_SUFFIXES, ".toml"} and not Path(name).is_file():
-        raise ControllerError(f"controller `{name}`: there is no such file")
-    if suffix in POLICY_SUFFIXES:
-        return [policy.from_file(name)]
-    if suffix == ".toml":
-        return [rules.rules(Path(name).stem, name)]
+    if name in makers:
+        return [makers[name]()]
+    path = Path(name)
+    if path.suffix in {*POLICY_SUFFIXES, RULES_SUFFIX}:
+        if not path.is_file():
+            raise ControllerError(f"controller `{name}`: there is no such file")
+        return [rules.rules(path.stem, path) if path.suffix == RULES_SUFFIX else policy.from_file(name)]
     if ":" in name:
         return [python_class.load(name)]
-    known = ", ".join(DEFAULTS)
     message = (
-        f"unknown controller `{name}`; available: {known}, the path of a policy (.safetensors, .onnx) "
-        "or of a controller file (.toml), or module:Class"
+        f"unknown controller `{name}`; available: {', '.join(DEFAULTS)}, the path of a policy "
+        "(.safetensors, .onnx) or of a controller file (.toml), or module:Class"
     )
     raise ControllerError(message)

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 import hp_gym
 from agents.controllers.controller import Act, Controller, ControllerError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from hp_gym.overrides import Value
     from hp_gym.vector_env import EVHeatPumpVectorEnv
 
 FILES: Final = ("hpcu", "hpcu-best-mode", "hpcu-tuned")
 """Rule-based controllers of the comparison, each a file in configs/controllers."""
 
-# The PTC warms the cabin's air itself: no coolant loop is needed.
+# The PTC warms the high temperature circuit; what it warms there is to reach the cabin alone.
 _NO_HEAT_PUMP: Final[Mapping[str, Value]] = {
     "scenario.strategy.heat_pump": False,
     "scenario.strategy.battery": "isolate",
@@ -60,11 +61,13 @@ def shipped(name: str) -> Controller:
     """
     files = hp_gym.names("controller")
     if name not in files:
-        message = f"controller `{name}` has no file configs/controllers/{name}.toml; there are {', '.join(files)}"
+        message = (
+            f"controller `{name}` has no file configs/controllers/{name}.toml; there are {', '.join(files)}"
+        )
         raise ControllerError(message)
     return rules(name)
 
 
 def ptc_only() -> Controller:
-    """The paper's rules without heat pump: PTC heater, no coolant loop, no air conditioning."""
+    """The paper's rules without heat pump: the PTC heats the cabin, and there is no air conditioning."""
     return rules("ptc-only", "hpcu", _NO_HEAT_PUMP)

@@ -108,9 +108,10 @@ def _array(parameter: torch.nn.Parameter) -> np.ndarray[Any, np.dtype[np.float32
 def _normalisation(wrapper: VecNormalize | None) -> Normalisation | None:
     if wrapper is None or not wrapper.norm_obs:
         return None
+    moments: Any = wrapper.obs_rms
     return Normalisation(
-        np.array(wrapper.obs_rms.mean, dtype=np.float64),
-        np.array(wrapper.obs_rms.var, dtype=np.float64),
+        np.array(moments.mean, dtype=np.float64),
+        np.array(moments.var, dtype=np.float64),
         float(wrapper.clip_obs),
         float(wrapper.epsilon),
     )

@@ -16,8 +16,9 @@ Layer: TypeAlias = tuple[NDArray[np.float32], NDArray[np.float32]]
 
 FORMAT_VERSION: Final = 1
 
-# What sb3-contrib puts in place of the logit of an option that is masked.
-_MASKED_LOGIT: Final = np.float32(-1e8)
+
+MASKED_LOGIT: Final = np.float32(-1e8)
+"""What sb3-contrib puts in place of the output of an option that is masked."""
 
 _FROZEN: Final = ConfigDict(frozen=True, extra="forbid", strict=True)
 
@@ -199,6 +200,6 @@ class SavedPolicy:
                 given = None if masks is None else masks.shape
                 message = f"masks have the shape {given}, but the policy was trained with {outputs.shape}"
                 raise PolicyError(message)
-            outputs = np.where(masks, outputs, _MASKED_LOGIT)
+            outputs = np.where(masks, outputs, MASKED_LOGIT)
         ends = np.cumsum(self.metadata.option_counts)[:-1]
         return np.stack([np.argmax(branch, axis=1) for branch in np.split(outputs, ends, axis=1)], axis=1)

@@ -41,6 +41,7 @@ mod _core {
             Kind::Episodes,
             Kind::Reward,
             Kind::Benchmark,
+            Kind::Training,
         ];
         kinds.into_iter().find(|kind| kind.word() == word).ok_or_else(|| {
             let available = kinds.map(Kind::word).join(", ");

@@ -37,6 +37,8 @@ pub enum Kind {
     Reward,
     /// `benchmark/*.toml`
     Benchmark,
+    /// `agents/*.toml`
+    Training,
 }
 
 impl Kind {
@@ -52,6 +54,7 @@ impl Kind {
             Self::Episodes => ("episodes", "toml"),
             Self::Reward => ("rewards", "toml"),
             Self::Benchmark => ("benchmark", "toml"),
+            Self::Training => ("agents", "toml"),
         }
     }
 
@@ -68,6 +71,7 @@ impl Kind {
             Self::Episodes => "distribution of episodes",
             Self::Reward => "reward",
             Self::Benchmark => "benchmark",
+            Self::Training => "training configuration",
         }
     }
 }
