@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from markupsafe import Markup
 
+from agents.benchmark.matched import MOST_COMFORTABLE
 from agents.benchmark.report.layout import kpi_path
 
 if TYPE_CHECKING:
@@ -20,6 +21,9 @@ WINS, LOSES, OPEN, NONE = (
 _CREDITS: Final[tuple[tuple[str, str], ...]] = (
     ("0", "without credit for the heat left at arrival"),
     ("0.5", "with half of it credited"),
+)
+_BETTER: Final = (
+    " It is more comfortable than any setting of the rules: compared with the most comfortable one."
 )
 
 
@@ -58,13 +62,14 @@ def sentence(layout: Layout, comparison: Comparison) -> Markup:
         for credit, words in _CREDITS
     ]
     return Markup(
-        "<strong>At equal comfort {} {} {}</strong>: attributable energy {}, at a mean discomfort of {} K."
+        "<strong>At equal comfort {} {} {}</strong>: attributable energy {}, at a mean discomfort of {} K.{}"
     ).format(
         name,
         said,
         comparison.rival,
         Markup(", ").join(parts),
         layout.summary.show(*kpi_path(name, "discomfort_k"), decimals=2),
+        _BETTER if layout.summary.get(*comparison.at("matched")) == MOST_COMFORTABLE else "",
     )
 
 
