@@ -36,12 +36,12 @@ class Difference:
 
 
 ENERGY: Final = Difference(
-    "energy_difference_pct", "energy_difference_ci95", "Attributable energy against hpcu, 95 % intervals", "%"
+    "energy_difference_pct", "energy_difference_ci95", "Attributable energy against hpcu", "%"
 )
 DISCOMFORT: Final = Difference(
     "discomfort_difference_k",
     "discomfort_difference_ci95",
-    "Mean discomfort against hpcu, 95 % intervals",
+    "Mean discomfort against hpcu",
     "K",
 )
 
@@ -69,6 +69,7 @@ def bars(layout: Layout, kpi: str, title: str, unit: str, looks: Mapping[str, St
             y=[round(value, 4) for _, value in known],
             marker={"color": looks[name].colour, "pattern": {"shape": looks[name].pattern}},
             name=html.escape(name),
+            legendgroup=name,
             visible="legendonly" if name in HIDDEN else True,
             hovertemplate="%{x}: %{y} " + unit,
         )
@@ -108,6 +109,7 @@ def differences(layout: Layout, what: Difference, looks: Mapping[str, Style]) ->
             cliponaxis=False,
             marker={"color": looks[name].colour, "symbol": looks[name].symbol, "size": 8},
             name=html.escape(name),
+            legendgroup=name,
             # Far from the others where there is nothing to heat.
             visible="legendonly" if name in {*HIDDEN, "ptc-only"} else True,
             hovertemplate="%{x}: %{y} " + what.unit,
@@ -118,7 +120,7 @@ def differences(layout: Layout, what: Difference, looks: Mapping[str, Style]) ->
 
 
 def _finished(figure: go.Figure, layout: Layout, title: str, unit: str) -> go.Figure:
-    figure.update_layout(title_text=title, yaxis_title=unit, xaxis_title="ambient temperature, °C")
+    figure.update_layout(title_text=title, yaxis_title=unit, xaxis_title="ambient, °C")
     names = [_title(band) for band in layout.bands]
     figure.update_xaxes(type="category", categoryorder="array", categoryarray=names)
     return figure

@@ -22,9 +22,7 @@ _CREDITS: Final[tuple[tuple[str, str], ...]] = (
     ("0", "without credit for the heat left at arrival"),
     ("0.5", "with half of it credited"),
 )
-_BETTER: Final = (
-    " It is more comfortable than any setting of the rules: compared with the most comfortable one."
-)
+_BETTER: Final = " No setting of the rules is as comfortable: the most comfortable one is compared."
 
 
 def verdict(layout: Layout, comparison: Comparison) -> str:
