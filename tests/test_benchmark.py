@@ -129,7 +129,7 @@ def test_every_controller_drives_every_scenario(runs: pd.DataFrame) -> None:
 def test_hpcu_drives_what_simulate_drives(runs: pd.DataFrame, place: Path, scenario: str) -> None:
     row = runs[(runs["controller"] == "hpcu") & (runs["scenario"] == scenario)].iloc[0]
     totals = hp_gym.simulate(place / "out" / "scenarios" / f"{scenario}.toml").summary
-    names = ("energy_kwh", "compressor_energy_kwh", "ptc_energy_kwh", "chemical_energy_kwh", "final_soc_pct")
+    names = ("energy_kwh", "compressor_energy_kwh", "ptc_energy_kwh", "final_soc_pct", "distance_km")
     assert {name: row[name] for name in names} == {name: totals[name] for name in names}
     # One is summed up in hours, the other in seconds.
     assert row["discomfort_k"] == pytest.approx(totals["discomfort_k"], rel=1e-12)
