@@ -1,7 +1,6 @@
 """Controllers by name, file and class."""
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -41,11 +40,11 @@ def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     return name
 
 
-def driven(name: str, steps: int = 30, num_envs: int = 2, **settings: Any) -> EVHeatPumpVectorEnv:
+def driven(
+    name: str, steps: int = 30, num_envs: int = 2, scenario: str = "ours/commute-minus5"
+) -> EVHeatPumpVectorEnv:
     (controller,) = resolve(name)
-    env = EVHeatPumpVectorEnv(
-        num_envs, scenario="ours/commute-minus5", threads=1, **{**controller.environment, **settings}
-    )
+    env = EVHeatPumpVectorEnv(num_envs, scenario=scenario, threads=1, **controller.environment)
     observations, _ = env.reset(seed=0)
     act = controller.begin(env)
     for _ in range(steps):
@@ -84,13 +83,11 @@ def test_a_class_drives_with_its_own_environment(module: str) -> None:
 
 def test_a_controller_file_is_a_controller(tmp_path: Path) -> None:
     path = tmp_path / "mild.toml"
-    path.write_text('base = "hpcu"\ncabin_set_point_degc = 15.0\n', encoding="utf-8")
+    path.write_text('base = "hpcu"\ncabin_set_point_degc = 10.0\n', encoding="utf-8")
     (controller,) = resolve(str(path))
     assert controller.name == "mild"
-    cabins_degc = [
-        driven(each, steps=900).signals(0)["cabin_temperature_degc"] for each in (str(path), "hpcu")
-    ]
-    assert cabins_degc[0] < 17.0 < cabins_degc[1]
+    cool, warm = (driven(each, 1200, scenario="jeffs2019/case1-4").signals(0) for each in (str(path), "hpcu"))
+    assert cool["cabin_temperature_degc"] < 12.0 < warm["cabin_temperature_degc"]
 
 
 @pytest.mark.parametrize(

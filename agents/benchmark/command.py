@@ -11,6 +11,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 import hp_gym
 from agents.benchmark import drive, files, grid, run
+from agents.benchmark.report import write_report
 from agents.controllers import DEFAULTS, Controller, policy, resolve
 from agents.controllers.rules import FILES
 
@@ -86,6 +87,7 @@ def carry_out(request: Request, console: Console) -> Done:
 
             benchmark, front_runs = run.run(plan, folder, begin)
         files.write(benchmark, front_runs, folder)
+        write_report(benchmark, folder / files.REPORT)
         simulated_s = sum(
             float(runs["duration_s"].sum()) for runs in (benchmark.runs, front_runs) if len(runs)
         )
@@ -127,4 +129,4 @@ def controllers(request: Request, console: Console) -> list[Controller]:
 
 def _bar(console: Console) -> Progress:
     columns = (TextColumn("driving"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    return Progress(*columns, console=console, transient=True)
+    return Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
