@@ -36,12 +36,12 @@ class Difference:
 
 
 ENERGY: Final = Difference(
-    "energy_difference_pct", "energy_difference_ci95", "Attributable energy against hpcu, 95 % intervals", "%"
+    "energy_difference_pct", "energy_difference_ci95", "Attributable energy against hpcu", "%"
 )
 DISCOMFORT: Final = Difference(
     "discomfort_difference_k",
     "discomfort_difference_ci95",
-    "Mean discomfort against hpcu, 95 % intervals",
+    "Mean discomfort against hpcu",
     "K",
 )
 
@@ -59,20 +59,22 @@ def bars(layout: Layout, kpi: str, title: str, unit: str, looks: Mapping[str, St
     figure = go.Figure()
     for name in layout.controllers:
         # What a trip used until it stranded cannot be compared.
-        values = [
-            None if layout.kpi(name, "stranded", band) else layout.kpi(name, kpi, band)
+        known = [
+            (band, value)
             for band in layout.bands
+            if not layout.kpi(name, "stranded", band) and (value := layout.kpi(name, kpi, band)) is not None
         ]
         figure.add_bar(
-            x=_names(layout),
-            y=[None if value is None else round(value, 4) for value in values],
+            x=[_title(band) for band, _ in known],
+            y=[round(value, 4) for _, value in known],
             marker={"color": looks[name].colour, "pattern": {"shape": looks[name].pattern}},
             name=html.escape(name),
+            legendgroup=name,
             visible="legendonly" if name in HIDDEN else True,
             hovertemplate="%{x}: %{y} " + unit,
         )
-    figure.update_layout(barmode="group", title_text=title, yaxis_title=unit, **_ambient_axis())
-    return figure
+    figure.update_layout(barmode="group")
+    return _finished(figure, layout, title, unit)
 
 
 def differences(layout: Layout, what: Difference, looks: Mapping[str, Style]) -> go.Figure:
@@ -93,7 +95,7 @@ def differences(layout: Layout, what: Difference, looks: Mapping[str, Style]) ->
             and (ends := layout.interval(name, band, what.interval)) is not None
         ]
         figure.add_scatter(
-            x=[html.escape(band_title(band)) for band, _, _ in known],
+            x=[_title(band) for band, _, _ in known],
             y=[round(value, 4) for _, value, _ in known],
             error_y={
                 "type": "data",
@@ -107,21 +109,22 @@ def differences(layout: Layout, what: Difference, looks: Mapping[str, Style]) ->
             cliponaxis=False,
             marker={"color": looks[name].colour, "symbol": looks[name].symbol, "size": 8},
             name=html.escape(name),
+            legendgroup=name,
             # Far from the others where there is nothing to heat.
             visible="legendonly" if name in {*HIDDEN, "ptc-only"} else True,
             hovertemplate="%{x}: %{y} " + what.unit,
         )
     figure.add_hline(y=0.0, line={"color": looks[PAPER].colour, "width": 1.5})
-    figure.update_layout(
-        scattermode="group", scattergap=0.4, title_text=what.title, yaxis_title=what.unit, **_ambient_axis()
-    )
-    figure.update_xaxes(categoryorder="array", categoryarray=_names(layout))
+    figure.update_layout(scattermode="group", scattergap=0.4)
+    return _finished(figure, layout, what.title, what.unit)
+
+
+def _finished(figure: go.Figure, layout: Layout, title: str, unit: str) -> go.Figure:
+    figure.update_layout(title_text=title, yaxis_title=unit, xaxis_title="ambient, °C")
+    names = [_title(band) for band in layout.bands]
+    figure.update_xaxes(type="category", categoryorder="array", categoryarray=names)
     return figure
 
 
-def _names(layout: Layout) -> list[str]:
-    return [html.escape(band_title(band)) for band in layout.bands]
-
-
-def _ambient_axis() -> dict[str, str]:
-    return {"xaxis_title": "ambient temperature, °C", "xaxis_type": "category"}
+def _title(band: str) -> str:
+    return html.escape(band_title(band))

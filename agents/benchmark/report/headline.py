@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from markupsafe import Markup
 
+from agents.benchmark.matched import MOST_COMFORTABLE
 from agents.benchmark.report.layout import kpi_path
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ _CREDITS: Final[tuple[tuple[str, str], ...]] = (
     ("0", "without credit for the heat left at arrival"),
     ("0.5", "with half of it credited"),
 )
+_BETTER: Final = " No setting of the rules is as comfortable: the most comfortable one is compared."
 
 
 def verdict(layout: Layout, comparison: Comparison) -> str:
@@ -58,13 +60,14 @@ def sentence(layout: Layout, comparison: Comparison) -> Markup:
         for credit, words in _CREDITS
     ]
     return Markup(
-        "<strong>At equal comfort {} {} {}</strong>: attributable energy {}, at a mean discomfort of {} K."
+        "<strong>At equal comfort {} {} {}</strong>: attributable energy {}, at a mean discomfort of {} K.{}"
     ).format(
         name,
         said,
         comparison.rival,
         Markup(", ").join(parts),
         layout.summary.show(*kpi_path(name, "discomfort_k"), decimals=2),
+        _BETTER if layout.summary.get(*comparison.at("matched")) == MOST_COMFORTABLE else "",
     )
 
 

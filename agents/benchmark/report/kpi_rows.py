@@ -47,7 +47,7 @@ DIAGNOSTICS: Final = (
     Kpi("battery_window_k_h", "Battery outside its window", "K h", 2),
     Kpi("protection_trips", "Protection events", "per trip", 2),
     Kpi("compressor_starts", "Compressor starts", "per trip", 2),
-    Kpi("limit_breaches", "Limit breaches, all trips of the headline", "count", 0),
+    Kpi("limit_breaches", "Time beyond a limit, all trips of the headline", "s", 0),
     Kpi("distance_km", "Distance", "km", 1),
     Kpi("duration_s", "Duration", "s", 0),
     Kpi("trips", "Trips driven, headline bands, all seeds", "count", 0),

@@ -92,7 +92,7 @@ class Layout:
 
 
 def band_title(band: str) -> str:
-    """Returns the name of a climate band with a true minus and in words: `-10..0` is `−10 to 0`."""
+    """Returns the name of a climate band in words, with a true minus before numbers: `0..10` is `0 to 10`."""
     return re.sub(r"-(?=\d)", MINUS, band).replace("..", " to ")
 
 

@@ -38,12 +38,12 @@ def pareto(
         seeds = _seed_points(
             runs[(runs["controller"] == name) & runs["band"].isin(layout.headline_bands)], credit
         )
-        _draw_controller(figure, layout, name, seeds, credit, looks[name])
-    credited = f" less {credit:g} × heat left at arrival" if credit else ""
+        _draw_controller(figure, layout, name, seeds, credit, look=looks[name])
+    times = "\N{MULTIPLICATION SIGN}"
     figure.update_layout(
         xaxis_title="mean discomfort, K",
         yaxis_title="kWh per trip",
-        title_text=f"Attributable energy{credited}",
+        title_text=f"Energy less {credit:g} {times} heat left" if credit else "Attributable energy",
     )
     return figure
 
@@ -80,11 +80,11 @@ def _draw_front(
     figure.add_scatter(
         x=_short(discomfort_k),
         y=_short(energy_kwh),
-        customdata=settings[["cabin_set_point_degc", "htc_set_point_degc"]].round(1).to_numpy().tolist(),
+        customdata=settings[["cabin_set_point_degc", "htc_set_point_degc"]].round(1).to_numpy(),
         mode="markers",
         marker={"color": colour, "size": 5, "opacity": 0.4},
         name=f"{name}, other set points",
-        legendgroup=f"front {name}",
+        legendgroup=f"front of {family}",
         showlegend=False,
         hovertemplate="cabin %{customdata[0]} °C, HTC %{customdata[1]} °C<br>%{x} K, %{y} kWh",
     )
@@ -94,13 +94,13 @@ def _draw_front(
         mode="lines",
         line={"color": colour, "width": 2},
         name=f"front of {name}",
-        legendgroup=f"front {name}",
+        legendgroup=f"front of {family}",
         hoverinfo="skip",
     )
 
 
 def _draw_controller(
-    figure: go.Figure, layout: Layout, name: str, seeds: pd.DataFrame, credit: float, look: Style
+    figure: go.Figure, layout: Layout, name: str, seeds: pd.DataFrame, credit: float, *, look: Style
 ) -> None:
     discomfort_k = layout.kpi(name, "discomfort_k")
     energy_kwh = layout.kpi(name, "attributable_energy_kwh")
@@ -118,8 +118,7 @@ def _draw_controller(
             mode="markers",
             marker={"color": look.colour, "symbol": look.symbol, "size": 6, "opacity": 0.6},
             name=f"{html.escape(name)}, one seed",
-            legendgroup=html.escape(name),
-            showlegend=False,
+            legendgroup=name,
             hovertemplate="seed %{customdata}: %{x} K, %{y} kWh",
             **shown,
         )
@@ -134,7 +133,7 @@ def _draw_controller(
             "line": {"color": look.colour if stranded else "#ffffff", "width": 2.0},
         },
         name=html.escape(name),
-        legendgroup=html.escape(name),
+        legendgroup=name,
         hovertemplate="%{x} K, %{y} kWh",
         **shown,
     )

@@ -31,7 +31,7 @@ class Summary:
     def __init__(self, data: Mapping[str, Any]) -> None:
         self.data = data
 
-    def get(self, *path: str | int) -> Any:  # noqa: ANN401 (any JSON)
+    def get(self, *path: str | int) -> Any:
         """Returns what stands at a place; None where there is nothing."""
         here: Any = self.data
         for key in path:

@@ -24,7 +24,7 @@ function show() {
   const names = { left: chosen("left"), right: chosen("right") };
   const runs = Object.fromEntries(Object.entries(names).map(([side, name]) => [side, traces.scenarios[scenario][name]]));
   const narrow = section.clientWidth < NARROW_PX;
-  draw_pair("plot-pair", traces, runs, names, narrow || chosen("view") === "over");
+  draw_pair("plot-pair", traces, runs, names, narrow || chosen("view") === "over", narrow);
   for (const side of ["left", "right"]) {
     draw_energy(`plot-electricity-${side}`, runs[side].electricity, `Electricity: ${plain(names[side])}`, 330);
     draw_energy(`plot-heat-${side}`, runs[side].heat, `Heat: ${plain(names[side])}`, 420);

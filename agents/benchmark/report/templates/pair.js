@@ -33,7 +33,7 @@ const connections = (run, members, axes, showing) => ({
   colorscale: LOOPS.flatMap(([, colour], place) => [[place / 3, colour], [(place + 1) / 3, colour]]), ...axes,
 });
 
-function draw_pair(place, traces, runs, names, over) {
+function draw_pair(place, traces, runs, names, over, narrow) {
   const traces_drawn = [], annotations = [], shapes = [], layout = {};
   const count = over ? 1 : 2;
   const timelines = over ? 2 : 1;
@@ -41,8 +41,8 @@ function draw_pair(place, traces, runs, names, over) {
   const rows = domains(weights);
   const width = over ? 1 : 0.485;
   const axis = (row, column) => { const number = row * count + column + 1; return number === 1 ? "" : String(number); };
-  const heading = (text, x, y, size = 13) => annotations.push({
-    text, x, y, xref: "paper", yref: "paper", xanchor: "left", yanchor: "bottom", showarrow: false, font: { ...FONT, size } });
+  const heading = (text, x, y, size = narrow ? 11 : 13) => annotations.push({
+    text, x, y, xshift: narrow ? -75 : 0, xref: "paper", yref: "paper", xanchor: "left", yanchor: "bottom", showarrow: false, font: { ...FONT, size } });
 
   rows.forEach((domain, row) => {
     for (let column = 0; column < count; column += 1) {
