@@ -28,8 +28,8 @@ def from_file(path: str | os.PathLike[str], name: str | None = None) -> Controll
 
     Args:
         path: The file.
-        name: Name in tables; by default that of the file, without folder and training seed: policies that were
-            trained with several seeds (`mine-seed0.safetensors`, ...) are runs of one controller.
+        name: Name in tables; by default that of the file, without folder and training seed: policies that
+            were trained with several seeds (`mine-seed0.safetensors`, ...) are runs of one controller.
 
     Raises:
         ControllerError: It is no policy or does not fit; loading never runs code.
