@@ -26,7 +26,7 @@ COOLER_HTC = {"controller.htc_set_point_degc": 60.0}
 TABLES = {
     "description": "A few trips",
     "scenario": "ours/commute-minus5",
-    "cycles": [{"name": "hwfet", "least_battery_temperature_degc": -10.0}],
+    "cycles": [{"name": "hwfet"}],
     "ambient_temperatures_degc": [-10, 5, 30],
     "shown": ["5-hwfet-dark"],
     "variants": [

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
+from threadpoolctl import threadpool_limits
+
 from agents.benchmark import environment_facts, statistics, summary
 from agents.benchmark.drive import drive_all, trajectories
 from agents.benchmark.fronts import settings
@@ -80,7 +82,11 @@ def run(
     tasks: list[Task] = [(controller, grid.scenarios) for controller in plan.controllers]
     tasks += [(setting.controller, heating) for setting in rivals]
     progress = begin(sum(len(scenarios) for _, scenarios in tasks))
-    rows = drive_all(tasks, files, progress)
+    # Controllers already share the cores; threads of a linear algebra library would only wait for each other,
+    # and its sums would depend on their number.
+    with threadpool_limits(1):
+        rows = drive_all(tasks, files, progress)
+        shown = _trajectories(plan, files)
     runs = pd.DataFrame([row for driven in rows[: len(plan.controllers)] for row in driven])
     front_runs = _front_runs(rivals, rows[len(plan.controllers) :])
     resamples = statistics.resample(
@@ -92,7 +98,6 @@ def run(
     ablations = [name for name in learned if name.startswith(ABLATION)]
     ablation_gains = summary.all_gains(evidence, ablations) or None
     found = _summary(plan, evidence, [name for name in learned if name not in ablations], ablation_gains)
-    shown = _trajectories(plan, files)
     return Benchmark(runs, fronts, found, shown, ablation_gains), front_runs
 
 

@@ -61,7 +61,7 @@ def _controllers(summary: Mapping[str, Any]) -> Table:
 def _bands(summary: Mapping[str, Any]) -> Table:
     bands = summary["grid"]["bands"]
     shown = [name for name, band in bands.items() if band["scenarios"]]
-    table = _table("By ambient temperature: energy in kWh/100 km, discomfort in K")
+    table = _table("By ambient temperature: energy in kWh/100 km / discomfort in K")
     table.add_column("controller", no_wrap=True, max_width=14)
     for name in shown:
         table.add_column(
@@ -71,7 +71,7 @@ def _bands(summary: Mapping[str, Any]) -> Table:
         cells = []
         for name in shown:
             band = kpis["bands"][name]
-            cells.append(f"{band['attributable_energy_kwh_per_100_km']:.1f}  {band['discomfort_k']:.1f}")
+            cells.append(f"{band['attributable_energy_kwh_per_100_km']:.1f}/{band['discomfort_k']:.1f}")
         table.add_row(controller, *cells)
     table.caption = "In brackets: apart from the headline; the paper gives no air conditioning."
     table.caption_justify = "left"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -11,6 +11,7 @@ from agents.policies import PolicyError, load
 from agents.policies import reference as shipped
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Collection
 
     from hp_gym.vector_env import EVHeatPumpVectorEnv
@@ -27,7 +28,8 @@ def from_file(path: str | os.PathLike[str], name: str | None = None) -> Controll
 
     Args:
         path: The file.
-        name: Name in tables; the path by default.
+        name: Name in tables; by default that of the file, without folder and training seed: policies that
+            were trained with several seeds (`mine-seed0.safetensors`, ...) are runs of one controller.
 
     Raises:
         ControllerError: It is no policy or does not fit; loading never runs code.
@@ -44,7 +46,7 @@ def from_file(path: str | os.PathLike[str], name: str | None = None) -> Controll
 
     seed = policy.metadata.seed
     return Controller(
-        os.fspath(path) if name is None else name,
+        Path(path).stem.rsplit("-seed", 1)[0] if name is None else name,
         begin,
         policy.environment,
         NO_SEED if seed is None else seed,
@@ -87,10 +89,8 @@ def ablations() -> list[Controller]:
         ControllerError: One cannot be loaded.
     """
     folder = Path(shipped.FOLDER) / "ablations"
-    return [
-        from_file(path, ABLATION + path.stem.rsplit("-seed", 1)[0])
-        for path in sorted(folder.glob("*.safetensors"))
-    ]
+    made = (from_file(path) for path in sorted(folder.glob("*.safetensors")))
+    return [replace(controller, name=ABLATION + controller.name) for controller in made]
 
 
 def _listed(seeds: Collection[int]) -> str:
