@@ -27,22 +27,24 @@ class RewardScale:
     def __init__(self, training: Training) -> None:
         self._factor = training.normalisation.reward_scale
         table = training.normalisation.typical_cost
-        self._degc, self._points = np.array(table).T if table is not None else (None, None)
+        self._costs: NDArray[np.float64] | None = None
         if table is not None:
+            self._costs = np.array(table)
             self._row, self._low_degc, self._high_degc = _ambient_row(training)
 
     @property
     def is_one(self) -> bool:
         """Whether rewards stay as they are."""
-        return self._degc is None and self._factor == 1.0
+        return self._costs is None and self._factor == 1.0
 
     def factors(self, observations: NDArray[np.float32]) -> NDArray[np.float64]:
         """Returns the factor of each environment that gave these observations; the same all trip long."""
-        if self._degc is None:
+        if self._costs is None:
             return np.full(len(observations), self._factor)
         share = 0.5 * (observations[:, self._row] + 1.0)
         ambient_degc = self._low_degc + share * (self._high_degc - self._low_degc)
-        return self._factor / np.interp(ambient_degc, self._degc, self._points)
+        points: NDArray[np.float64] = np.interp(ambient_degc, self._costs[:, 0], self._costs[:, 1])
+        return self._factor / points
 
 
 class ScaledReward(VecEnvWrapper):
