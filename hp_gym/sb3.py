@@ -64,6 +64,14 @@ class SB3VecEnv(VecEnv):
             self.reset_infos[index] = _one(infos, index)
         return observations, rewards.astype(np.float32), done, told
 
+    def episodes_so_far(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Returns returns and lengths of the trips under way."""
+        return self._returns.copy(), self._lengths.copy()
+
+    def set_episodes_so_far(self, returns: NDArray[np.float64], lengths: NDArray[np.int64]) -> None:
+        """Restores what `episodes_so_far` returned, after `venv.set_state`."""
+        self._returns[:], self._lengths[:] = returns, lengths
+
     def close(self) -> None:
         """Ends all environments."""
         self.venv.close()

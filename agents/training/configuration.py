@@ -213,7 +213,7 @@ def load(name: str, changes: Sequence[str] = ()) -> Training:
     """Loads a training configuration.
 
     Args:
-        name: Name of a file in `configs/agents`, or a path. A file may name a `base` whose values it replaces.
+        name: Name of a file in `configs/agents`, or a path. A file may name a `base` and give what differs.
         changes: Single values as `key=value`, dotted key, value in TOML.
 
     Raises:
