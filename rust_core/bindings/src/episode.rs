@@ -56,11 +56,11 @@ pub fn speeds_m_s(episode: &episode::Episode) -> Vec<f64> {
 /// What is told of a trip when it begins.
 pub fn trip_info<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<Bound<'py, PyDict>> {
     let info = PyDict::new(py);
-    if let Some((trip, experiment)) = episode.trip() {
-        info.set_item(intern!(py, "scenario"), &trip.origin)?;
-        info.set_item(intern!(py, "cycle"), &trip.scenario.cycle)?;
+    if let Some((origin, experiment)) = episode.trip() {
+        info.set_item(intern!(py, "scenario"), origin)?;
+        info.set_item(intern!(py, "cycle"), &experiment.scenario.cycle)?;
         info.set_item(intern!(py, "trip_s"), experiment.cycle.duration_s())?;
-        let ambient_degc = trip.scenario.climate.ambient_temperature_degc.0;
+        let ambient_degc = experiment.scenario.climate.ambient_temperature_degc.0;
         info.set_item(intern!(py, "ambient_temperature_degc"), ambient_degc)?;
     }
     Ok(info)

@@ -2,8 +2,8 @@
 
 use hp_plant::circuits::branches::{self, Branch};
 use hp_plant::command::{
-    ACTUATOR_COUNT, ACTUATORS, ActuatorRanges, BLOWER, Command, Connection, Demand, MAXIMUM_REQUEST_W,
-    Member, RECIRCULATION, REQUESTS, Scale,
+    ACTUATOR_COUNT, ACTUATORS, BLOWER, Command, Connection, Demand, MAXIMUM_REQUEST_W, Member, RECIRCULATION,
+    REQUESTS, Scale,
 };
 use hp_plant::control::heat_demand_commander;
 use hp_plant::error::{PlantError, PlantResult};
@@ -249,9 +249,9 @@ impl Defaults {
         experiment: &Experiment,
         time_s: f64,
     ) -> Command {
-        let ranges = &experiment.plant.ranges;
         let mut command = self.command;
         if self.requests_change {
+            let ranges = &experiment.plant.ranges;
             let requests_w = heat_demand_commander::requests_w(&experiment.scenario.heat_demand, time_s);
             for (i, request_w) in requests_w.into_iter().enumerate() {
                 command.0[REQUESTS + i] = ranges.normalise(REQUESTS + i, request_w);
@@ -261,21 +261,25 @@ impl Defaults {
             command.0[row] = value;
         }
         if !table.selects(RECIRCULATION) {
-            let cooling = asked(ranges, &command, Member::Cabin) == Connection::Chiller;
+            let cooling = asked(&command, Member::Cabin) == Connection::Chiller;
             command.0[RECIRCULATION] = self.recirculation(cooling);
         }
-        if !table.selects(AMBIENT_REQUEST) && asked(ranges, &command, Member::Ambient) == Connection::Htc {
+        if !table.selects(AMBIENT_REQUEST) && asked(&command, Member::Ambient) == Connection::Htc {
             command.0[AMBIENT_REQUEST] = self.unlimited_request;
         }
         command
     }
 }
 
-/// Connection that a command asks for.
+/// Connection that a command asks for, as [`ActuatorRanges::physical`] reads it.
+///
+/// [`ActuatorRanges::physical`]: hp_plant::command::ActuatorRanges::physical
 #[must_use]
-pub fn asked(ranges: &ActuatorRanges, command: &Command, member: Member) -> Connection {
-    let row = member as usize;
-    member.options()[ranges.physical(row, command.0[row]) as usize]
+pub fn asked(command: &Command, member: Member) -> Connection {
+    let options = member.options();
+    let share = 0.5 * (f64::from(command.0[member as usize]) + 1.0);
+    // The conversion rounds towards zero and holds what is below at zero.
+    options[((share * options.len() as f64) as usize).min(options.len() - 1)]
 }
 
 #[cfg(test)]
@@ -304,6 +308,19 @@ mod tests {
         let ratio = (high / low).powf(1.0 / 9.0);
         for pair in powers[1..].windows(2) {
             assert!((pair[1] / pair[0] / ratio - 1.0).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn connections_asked_for_are_those_that_the_plant_reads() {
+        let experiment = Experiment::load("jeffs2019/case1-1", None, &[]).expect("built in");
+        let mut command = Command([0.0; ACTUATOR_COUNT]);
+        for value in (-1000..=1000).map(|thousandth| thousandth as f32 / 1000.0) {
+            command.0.fill(value);
+            let demand = experiment.plant.ranges.decode(&command);
+            for member in Member::ALL {
+                assert_eq!(asked(&command, member), demand.connections[member as usize], "{value}");
+            }
         }
     }
 

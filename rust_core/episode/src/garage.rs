@@ -94,18 +94,18 @@ impl Garage {
     ///
     /// # Errors
     /// Its origin or cycle cannot be loaded.
-    pub fn build(&self, trip: &Trip) -> PlantResult<Experiment> {
+    pub fn build(&self, trip: Trip) -> PlantResult<Experiment> {
         let origin = self.experiment(&trip.origin)?;
         let mut cycle = self.cycle(&trip.scenario.cycle)?;
         if let Some((first_s, last_s)) = trip.window {
             cycle = Arc::new(cycle.window(first_s, last_s));
         }
         Ok(Experiment {
-            scenario: trip.scenario.clone(),
+            hpcu: Hpcu::of(&origin.rules, &trip.scenario),
+            scenario: trip.scenario,
             plant: Arc::clone(&origin.plant),
             cycle,
             controller: origin.controller.clone(),
-            hpcu: Hpcu::of(&origin.rules, &trip.scenario),
             rules: Arc::clone(&origin.rules),
         })
     }
