@@ -1,6 +1,6 @@
 //! The vehicle: one entry, [`Plant::step`], pure and deterministic.
 
-use crate::circuits::assembly::{Assembly, LinkConditions, RECOVERY_APPROACH_K};
+use crate::circuits::assembly::{Assembly, LinkConditions, NODES, RECOVERY_APPROACH_K};
 use crate::circuits::branches::{self, BRANCH_COUNT, Branch, BranchFlows, BranchTemperatures};
 use crate::circuits::refrigeration_cycle::RefrigerationCycle;
 use crate::circuits::refrigeration_loop::{
@@ -153,7 +153,7 @@ impl Plant {
     #[must_use]
     pub fn parked(&self, initial: &InitialParameters) -> State {
         let soak_k = initial.soak_temperature_degc.kelvin();
-        let nodes = &self.assembly.nodes;
+        let nodes = NODES;
         let mut temperatures_k = [0.0; MAXIMUM_NODES];
         temperatures_k[..self.assembly.network.nodes()].fill(soak_k);
         if let Some(cabin) = initial.cabin_temperature_degc {
@@ -249,7 +249,7 @@ impl Plant {
         recirculation: f64,
         ambient_k: f64,
     ) -> BranchTemperatures {
-        let nodes = &self.assembly.nodes;
+        let nodes = NODES;
         let at = |node: crate::numerics::thermal_network::Node| state.temperatures_k[node.index()];
         let htc_rate_w_k = state.htc_pump.flow_kg_s * self.vehicle.htc.circuit.coolant_specific_heat_j_kg_k;
         BranchTemperatures {
@@ -329,7 +329,7 @@ impl Plant {
             state.ptc_pid.clear();
             return 0.0;
         }
-        let error_k = demand.cabin_set_point_k - state.temperatures_k[self.assembly.nodes.cabin.index()];
+        let error_k = demand.cabin_set_point_k - state.temperatures_k[NODES.cabin.index()];
         state.ptc_pid.output(&ptc.pid, error_k, CONTROL_PERIOD_S, 0.0, ptc.maximum_power_w)
     }
 
@@ -358,7 +358,7 @@ impl Plant {
         tamper: &mut impl FnMut(Stage, &mut Flows),
     ) -> StepRecord {
         let vehicle = &self.vehicle;
-        let nodes = &self.assembly.nodes;
+        let nodes = NODES;
         let step_s = CONTROL_PERIOD_S / f64::from(self.substeps);
         let acceleration = (disturbance.end_speed_m_s - disturbance.start_speed_m_s) / CONTROL_PERIOD_S;
         let start_m_s = disturbance.start_speed_m_s + acceleration * step_s * f64::from(part);
@@ -510,7 +510,7 @@ impl Plant {
         disturbance: &Disturbance,
         speed_m_s: f64,
     ) -> LinkConditions {
-        let nodes = &self.assembly.nodes;
+        let nodes = NODES;
         let cabin_k = state.temperatures_k[nodes.cabin.index()];
         let lowest_k = state.temperatures_k[nodes.chiller_supply.index()] + RECOVERY_APPROACH_K;
         let recovers = period.branches_w_k[Branch::CabinHtc as usize] > 0.0
@@ -536,7 +536,7 @@ impl Plant {
 
     /// Heat that flows bring into the nodes [W].
     fn heat_sources(&self, flows: &Flows, conditions: &LinkConditions) -> NodeValues {
-        let nodes = &self.assembly.nodes;
+        let nodes = NODES;
         let mut sources = self.assembly.condenser_sources(flows[Flow::Condenser], conditions);
         sources[nodes.htc_supply.index()] += flows[Flow::Ptc];
         sources[nodes.htc_return.index()] += flows[Flow::HtcPump];

@@ -131,7 +131,7 @@ impl Experiment {
     pub fn start(&self) -> Run {
         let state = self.plant.parked(&self.scenario.initial);
         Run {
-            memory: self.hpcu.awake(&self.plant, &state),
+            memory: self.hpcu.awake(&state),
             state,
             steps: 0,
             record: None,

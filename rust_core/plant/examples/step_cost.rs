@@ -1,0 +1,38 @@
+//! Cost of a plant step, in time and, under callgrind, in instructions.
+//!
+//! `cargo run --release -p hp_plant --example step_cost -- heating` replays the compressor-on steps of the paper's
+//! nine scenarios with the HPCU; `random` drives all built-in scenarios with random actions each second. A second
+//! argument is the number of repetitions, of which the fastest counts. For instructions by function:
+//! `valgrind --tool=callgrind --toggle-collect='*measured*' target/release/examples/step_cost heating 1`.
+
+#[path = "../benches/support/workload.rs"]
+mod workload;
+
+use std::time::Instant;
+use workload::{Segment, compressor_on_segments, random_segments};
+
+/// The part that is timed and counted.
+#[inline(never)]
+fn measured(segments: &[Segment]) -> f64 {
+    segments.iter().map(Segment::replay).sum()
+}
+
+fn main() {
+    let mut arguments = std::env::args().skip(1);
+    let kind = arguments.next().unwrap_or_else(|| "heating".to_owned());
+    let repetitions: u32 = arguments.next().and_then(|text| text.parse().ok()).unwrap_or(20);
+    let segments = match kind.as_str() {
+        "heating" => compressor_on_segments(),
+        "random" => random_segments(),
+        other => panic!("`{other}` is no workload; there are heating and random"),
+    };
+    let steps: usize = segments.iter().map(|segment| segment.steps).sum();
+    let mut fastest_s = f64::INFINITY;
+    let mut checksum = 0.0;
+    for _ in 0..repetitions {
+        let start = Instant::now();
+        checksum = measured(&segments);
+        fastest_s = fastest_s.min(start.elapsed().as_secs_f64());
+    }
+    println!("{kind}: {steps} steps, {:.3} us a step (checksum {checksum})", fastest_s * 1e6 / steps as f64);
+}
