@@ -114,7 +114,7 @@ impl Experiment {
             plant: Arc::new(Plant::load(&scenario.vehicle, &part("vehicle"))?),
             cycle: Arc::new(DriveCycle::load(&scenario.cycle)?),
             controller,
-            hpcu: Hpcu { parameters, strategy: scenario.strategy.clone() },
+            hpcu: Hpcu::new(parameters, scenario.strategy.clone()),
             scenario,
         })
     }
@@ -130,13 +130,7 @@ impl Experiment {
     #[must_use]
     pub fn start(&self) -> Run {
         let state = self.plant.parked(&self.scenario.initial);
-        Run {
-            memory: self.hpcu.awake(&state),
-            state,
-            steps: 0,
-            record: None,
-            summary: Summary::default(),
-        }
+        Run { memory: self.hpcu.awake(&state), state, steps: 0, record: None, summary: Summary::default() }
     }
 
     /// What the surroundings do during a step.

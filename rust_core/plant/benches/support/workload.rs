@@ -32,11 +32,12 @@ impl Segment {
         let mut sum = 0.0;
         for step in 0..self.steps {
             let record = self.step(&mut run, step);
-            sum += record.battery_current_a;
+            sum += black_box(&record).battery_current_a;
         }
         sum
     }
 
+    #[inline(always)]
     fn step(&self, run: &mut Run, step: usize) -> StepRecord {
         let command = match &self.driver {
             Driver::RuleBased => self.experiment.rule_based_command(run),
@@ -44,7 +45,7 @@ impl Segment {
         };
         let disturbance = self.experiment.disturbance(run.steps);
         run.steps += 1;
-        black_box(self.experiment.plant.step(&mut run.state, &command, &disturbance))
+        self.experiment.plant.step(&mut run.state, &command, &disturbance)
     }
 }
 

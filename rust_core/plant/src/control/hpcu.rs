@@ -3,7 +3,7 @@
 //! Three purposes: constant coolant flow demands, connections of the components, compressor demand. It reads
 //! the plant's temperatures as a real one does and has no way to the plant but its [`Demand`].
 
-use super::pid::ResetPid;
+use super::pid::{ResetGains, ResetPid};
 use crate::circuits::assembly::NODES;
 use crate::circuits::branches::Branch;
 use crate::command::{Connection, Demand, Member};
@@ -67,9 +67,32 @@ pub struct Hpcu {
     pub parameters: HpcuParameters,
     /// Sources, battery treatment, PTC.
     pub strategy: Strategy,
+    gains: PowerGains,
+}
+
+/// Gains of the four PIDs of the compressor power.
+#[derive(Debug, Clone, PartialEq)]
+struct PowerGains {
+    cabin: ResetGains,
+    battery: ResetGains,
+    htc: ResetGains,
+    chiller: ResetGains,
 }
 
 impl Hpcu {
+    /// An HPCU with parameters and what it may use.
+    #[must_use]
+    pub fn new(parameters: HpcuParameters, strategy: Strategy) -> Self {
+        let gains = |pid: &PidParameters| ResetGains::new(pid, CONTROL_PERIOD_S);
+        let gains = PowerGains {
+            cabin: gains(&parameters.cabin_pid),
+            battery: gains(&parameters.battery_pid),
+            htc: gains(&parameters.htc_pid),
+            chiller: gains(&parameters.chiller_pid),
+        };
+        Self { parameters, strategy, gains }
+    }
+
     /// Memory at the start of a run.
     #[must_use]
     pub fn awake(&self, state: &State) -> HpcuState {
@@ -241,14 +264,14 @@ impl Hpcu {
         } else {
             memory.demanded_w.min(RESTART_SHARE * highest_w)
         };
-        let power = |pid: &mut ResetPid, gains: &PidParameters, error_k: f64| {
-            pid.applied(gains, applied_w, CONTROL_PERIOD_S);
-            pid.output(gains, error_k, CONTROL_PERIOD_S, 0.0, highest_w)
+        let power = |pid: &mut ResetPid, gains: &ResetGains, error_k: f64| {
+            pid.applied(gains, applied_w);
+            pid.output(gains, error_k, 0.0, highest_w)
         };
         let parameters = &self.parameters;
-        let cabin_w = power(&mut memory.cabin_pid, &parameters.cabin_pid, self.cabin_error_k(state, mode));
+        let cabin_w = power(&mut memory.cabin_pid, &self.gains.cabin, self.cabin_error_k(state, mode));
         let battery_w = match self.battery_error_k(state, memory) {
-            Some(error_k) => power(&mut memory.battery_pid, &parameters.battery_pid, error_k),
+            Some(error_k) => power(&mut memory.battery_pid, &self.gains.battery, error_k),
             None => 0.0,
         };
         if battery_w == 0.0 {
@@ -260,8 +283,8 @@ impl Hpcu {
             CabinMode::Cooling => parameters.cooling_chiller_set_point_degc,
         };
         let chiller_error_k = temperature_k(state, NODES.chiller_supply) - chiller_set_point.kelvin();
-        let htc_w = power(&mut memory.htc_pid, &parameters.htc_pid, htc_error_k);
-        let chiller_w = power(&mut memory.chiller_pid, &parameters.chiller_pid, chiller_error_k);
+        let htc_w = power(&mut memory.htc_pid, &self.gains.htc, htc_error_k);
+        let chiller_w = power(&mut memory.chiller_pid, &self.gains.chiller, chiller_error_k);
         memory.demanded_w = cabin_w.max(battery_w).min(htc_w).min(chiller_w);
         memory.demanded_w
     }
