@@ -11,11 +11,12 @@ import torch
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.logger import Logger, TensorBoardOutputFormat
+from stable_baselines3.common.on_policy_algorithm import OnPolicyAlgorithm
 from torch.utils.tensorboard.writer import SummaryWriter
 
 from agents.output import progress_console
-from agents.training import algorithms, checkpoint, environments
-from agents.training.configuration import Training
+from agents.training import algorithms, checkpoint, environments, imitation
+from agents.training.configuration import MaskablePPOTraining, PPOTraining, Training
 from agents.training.run_folder import RunFolder
 from agents.training.validation import Figures, Validation
 from agents.training.watch import Run, Watch
@@ -111,6 +112,8 @@ def _learn(run: Run, model: BaseAlgorithm, notes: dict[str, Any]) -> Outcome:
         task = progress.add_task(
             "train", total=training.total_decisions, told="", completed=model.num_timesteps
         )
+        if model.num_timesteps == 0:
+            _imitate(model, run, progress)
         watch = Watch(run, progress, task, notes)
         remaining = training.total_decisions - model.num_timesteps
         try:
@@ -140,6 +143,16 @@ def _learn(run: Run, model: BaseAlgorithm, notes: dict[str, Any]) -> Outcome:
         best=best,
         rules=watch.rules,
     )
+
+
+def _imitate(model: BaseAlgorithm, run: Run, progress: Progress) -> None:
+    """The warm start, where the configuration has one."""
+    training = run.training
+    if not isinstance(training, PPOTraining | MaskablePPOTraining) or training.imitation is None:
+        return
+    assert isinstance(model, OnPolicyAlgorithm)
+    task = progress.add_task("imitate", total=training.imitation.epochs, told="passes")
+    imitation.warm_start(model, training, run.seed, lambda: progress.advance(task))
 
 
 # In rollouts, and for SAC in trips.

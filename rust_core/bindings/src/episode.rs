@@ -168,7 +168,11 @@ impl Episode {
 
     /// Number of options of each action; empty in continuous mode.
     fn option_counts(&self) -> Vec<usize> {
-        if self.inner.setup().continuous { Vec::new() } else { self.inner.setup().actions.option_counts() }
+        if self.inner.setup().continuous {
+            Vec::new()
+        } else {
+            self.inner.setup().actions.option_counts().to_vec()
+        }
     }
 
     fn observation_rows(&self) -> Vec<ObservedRow> {
@@ -205,8 +209,8 @@ impl Episode {
         match actions::read(action, setup, None)? {
             Checked::Values(array) => values[..rows.len()].copy_from_slice(array.as_slice()?),
             Checked::Levels(array) => {
-                for ((value, &row), &level) in values.iter_mut().zip(rows).zip(array.as_slice()?) {
-                    *value = action::option_value(row, level as usize);
+                for (column, &level) in array.as_slice()?.iter().enumerate() {
+                    values[column] = setup.actions.value(column, level as usize);
                 }
             }
         }

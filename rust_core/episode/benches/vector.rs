@@ -48,7 +48,7 @@ impl Driven {
         let mut random = Random::seeded(1);
         let counts = setup.actions.option_counts();
         let levels = (0..20)
-            .map(|_| (0..count).flat_map(|_| counts.clone()).map(|n| random.index(n) as i64).collect())
+            .map(|_| (0..count).flat_map(|_| counts.to_vec()).map(|n| random.index(n) as i64).collect())
             .collect();
         let mut driven = Self {
             vector,

@@ -25,6 +25,9 @@ const LOWEST_RUNNING: f64 = -0.9;
 pub struct ActionTable {
     rows: Vec<usize>,
     selected: [bool; ACTUATOR_COUNT],
+    option_counts: Vec<usize>,
+    /// Normalised value of every option, row by row.
+    values: Vec<[f32; LEVELS]>,
 }
 
 /// Number of options of a row.
@@ -72,7 +75,12 @@ impl ActionTable {
     /// # Errors
     /// An unknown name, one given twice, or none at all.
     pub fn new(names: &[String]) -> PlantResult<Self> {
-        let mut table = Self { rows: Vec::with_capacity(names.len()), selected: [false; ACTUATOR_COUNT] };
+        let mut table = Self {
+            rows: Vec::with_capacity(names.len()),
+            selected: [false; ACTUATOR_COUNT],
+            option_counts: Vec::new(),
+            values: Vec::new(),
+        };
         for name in names {
             let row = ACTUATORS.iter().position(|actuator| actuator.name == name).ok_or_else(|| {
                 let available = ACTUATORS.map(|actuator| actuator.name).join(", ");
@@ -86,6 +94,8 @@ impl ActionTable {
                 });
             }
             table.rows.push(row);
+            table.option_counts.push(options(row));
+            table.values.push(std::array::from_fn(|option| option_value(row, option)));
         }
         if table.rows.is_empty() {
             return Err(PlantError::InvalidArgument {
@@ -103,6 +113,12 @@ impl ActionTable {
         &self.rows
     }
 
+    /// Normalised value of an option of the row in a column of an action.
+    #[must_use]
+    pub fn value(&self, column: usize, option: usize) -> f32 {
+        self.values[column][option]
+    }
+
     /// Whether a row is selected.
     #[must_use]
     pub fn selects(&self, row: usize) -> bool {
@@ -111,14 +127,14 @@ impl ActionTable {
 
     /// Number of options of each selected row.
     #[must_use]
-    pub fn option_counts(&self) -> Vec<usize> {
-        self.rows.iter().map(|&row| options(row)).collect()
+    pub fn option_counts(&self) -> &[usize] {
+        &self.option_counts
     }
 
     /// Length of the mask: all options of all selected rows.
     #[must_use]
     pub fn mask_length(&self) -> usize {
-        self.rows.iter().map(|&row| options(row)).sum()
+        self.option_counts.iter().sum()
     }
 
     /// Which options the plant would grant in the coming second, row by row.
