@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from sb3_contrib.common.maskable.distributions import MaskableMultiCategoricalDistribution
 from stable_baselines3.common.distributions import MultiCategoricalDistribution
@@ -33,6 +33,7 @@ def agree(fast: Any, theirs: Any, actions: torch.Tensor, spread: float) -> None:
     assert torch.equal(fast.mode(), theirs.mode())
 
 
+@settings(max_examples=30)
 @given(st.integers(0, 2**31), st.floats(0.01, 20.0))
 def test_probabilities_entropy_and_mode_are_those_of_the_library(seed: int, spread: float) -> None:
     logits, actions, masks = rows(seed, spread)

@@ -2,8 +2,6 @@
 
 import csv
 import json
-import os
-import resource
 import signal
 import subprocess
 import sys
@@ -176,7 +174,11 @@ def test_a_resumed_run_equals_an_uninterrupted_one(
 
 def test_a_process_killed_at_any_moment_is_continued(config: Path, tmp_path: Path) -> None:
     out = tmp_path / "run"
-    more = ["--decisions", "20000", *changes(["checkpoint_interval_decisions=256"])]
+    more = [
+        "--decisions",
+        "6000",
+        *changes(["checkpoint_interval_decisions=256", "validation.interval_decisions=3000"]),
+    ]
     process = subprocess.Popen(
         [*COMMAND, str(config), "--out", str(out), *more], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
     )
@@ -191,12 +193,30 @@ def test_a_process_killed_at_any_moment_is_continued(config: Path, tmp_path: Pat
     process.stderr.close()
     assert json.loads((out / "status.json").read_text())["state"] == "running"
     made = max(int(path.stem) for path in (out / "checkpoints").glob("[0-9]*.pt"))
-    assert 256 <= made < 20_000
+    assert 256 <= made < 6000
     result = run("--resume", out)
     assert result.exit_code == 0, result.output
     assert f"Going on from {made:,} decisions" in result.stderr
-    assert json.loads((out / "status.json").read_text())["decisions"] >= 20_000
+    assert json.loads((out / "status.json").read_text())["decisions"] >= 6000
     fails(run("--resume", out), "the run has finished")
+
+
+def test_a_run_that_is_stopped_tells_how_to_go_on(
+    config: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stopped(self: Any) -> bool:
+        if self.model.num_timesteps > 600:
+            raise KeyboardInterrupt
+        return True
+
+    out = tmp_path / "run"
+    with monkeypatch.context() as patch:
+        patch.setattr("agents.training.watch.Watch._on_step", stopped)
+        result = run(config, "--out", out)
+    assert result.exit_code == 130
+    assert f"hp-gym train --resume {out}" in result.stderr
+    assert json.loads((out / "status.json").read_text())["state"] == "interrupted"
+    assert run("--resume", out).exit_code == 0
 
 
 def test_the_checkpoint_before_a_damaged_one_is_used(config: Path, tmp_path: Path) -> None:
@@ -253,13 +273,16 @@ def test_a_folder_that_cannot_be_written_is_named(config: Path, tmp_path: Path) 
 def test_a_full_disk_leaves_what_was_written_before(config: Path, tmp_path: Path) -> None:
     out = tmp_path / "run"
     # A limit on the size of files stands in for a full disk: checkpoints of eight environments pass it.
+    limited = (
+        "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (12_000, 12_000)); "
+        "from agents.cli import main; main()"
+    )
     finished = subprocess.run(
-        [*COMMAND, str(config), "--out", str(out)],
+        [sys.executable, "-c", limited, "train", str(config), "--out", str(out)],
         check=False,
         capture_output=True,
         text=True,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (12_000, 12_000)),
-        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
+        timeout=300,
     )
     assert finished.returncode == 2, finished.stderr
     lines = finished.stderr.splitlines()
@@ -267,6 +290,7 @@ def test_a_full_disk_leaves_what_was_written_before(config: Path, tmp_path: Path
     assert "Traceback" not in finished.stderr
     assert policies.load(out / "best.safetensors").metadata.decisions == 512
     assert len(history(out)) == 1
+    assert json.loads((out / "status.json").read_text())["state"] == "interrupted"
     assert not list(out.glob("**/.*"))
     result = run("--resume", out)
     assert result.exit_code == 0, result.output

@@ -41,7 +41,7 @@ def gain(
     complete = front.runs(np.flatnonzero(front.stranded.sum(axis=1) == 0.0))
     if any(stranded.values()) or not len(complete.energy_kwh):
         none: dict[str, Any] = dict.fromkeys(("attributable_energy_pct", "ci95", "discomfort_k"))
-        return none | {"stranded_trips": stranded}
+        return none | {"seeds": list(seeds), "stranded_trips": stranded}
     agent_k = _discomfort_k(agent, resamples)
     rules_k = _discomfort_k(rules, resamples)
     front_k = resamples.each_run(complete.discomfort_k_h) / resamples.each_run(complete.occupied_h)

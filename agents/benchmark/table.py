@@ -19,16 +19,21 @@ LEAST_SEEDS: Final = 5
 
 def tables(summary: Mapping[str, Any]) -> Iterable[RenderableType]:
     """Yields what a person wants to see of a summary, the most important last."""
+    grid = summary["grid"]
+    yield f"[bold]Means over {grid['headline_scenarios']} held-out trips that call for heating[/]"
     yield _controllers(summary)
+    yield "[bold]By ambient temperature: energy in kWh/100 km / discomfort in K[/]"
     yield _bands(summary)
+    yield "In brackets: apart from the headline; the paper gives no air conditioning."
     if summary["gains"] or summary["ablations"]:
+        yield "[bold]Energy at matched comfort, the worse of arrival credits 0 and 0.5[/]"
         yield _gains(summary)
+        yield "Less is negative. Discomfort: against the rules at their own set points."
     yield from _remarks(summary)
 
 
 def _controllers(summary: Mapping[str, Any]) -> Table:
-    grid = summary["grid"]
-    table = _table(f"Means over {grid['headline_scenarios']} held-out trips that call for heating")
+    table = _table()
     table.add_column("controller", no_wrap=True, max_width=20)
     for heading in (
         "energy\nkWh/\n100 km",
@@ -61,7 +66,7 @@ def _controllers(summary: Mapping[str, Any]) -> Table:
 def _bands(summary: Mapping[str, Any]) -> Table:
     bands = summary["grid"]["bands"]
     shown = [name for name, band in bands.items() if band["scenarios"]]
-    table = _table("By ambient temperature: energy in kWh/100 km / discomfort in K")
+    table = _table()
     table.add_column("controller", no_wrap=True, max_width=14)
     for name in shown:
         table.add_column(
@@ -73,13 +78,11 @@ def _bands(summary: Mapping[str, Any]) -> Table:
             band = kpis["bands"][name]
             cells.append(f"{band['attributable_energy_kwh_per_100_km']:.1f}/{band['discomfort_k']:.1f}")
         table.add_row(controller, *cells)
-    table.caption = "In brackets: apart from the headline; the paper gives no air conditioning."
-    table.caption_justify = "left"
     return table
 
 
 def _gains(summary: Mapping[str, Any]) -> Table:
-    table = _table("Energy at matched comfort, the worse of arrival credits 0 and 0.5")
+    table = _table()
     table.add_column("comparison", no_wrap=True, max_width=34)
     for heading in ("energy\n%", "95 % interval\n%", "discom-\nfort K", "seeds"):
         table.add_column(heading, justify="right", no_wrap=True)
@@ -92,8 +95,6 @@ def _gains(summary: Mapping[str, Any]) -> Table:
             _signed(gain["discomfort_k"], 2),
             str(len(gain.get("seeds", []))),
         )
-    table.caption = "Less is negative. Discomfort: against the rules at their own set points."
-    table.caption_justify = "left"
     return table
 
 
@@ -111,10 +112,8 @@ def _remarks(summary: Mapping[str, Any]) -> Iterable[str]:
         yield f"Fewer than {LEAST_SEEDS} training seeds: the interval says little about training."
 
 
-def _table(title: str) -> Table:
-    return Table(
-        title=title, title_justify="left", title_style="bold", box=None, pad_edge=False, padding=(0, 1)
-    )
+def _table() -> Table:
+    return Table(box=None, pad_edge=False, padding=(0, 1))
 
 
 def _signed(value: float | None, decimals: int) -> str:

@@ -2,7 +2,7 @@
 
 import threading
 from collections.abc import Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -125,8 +125,10 @@ def _learn(run: Run, model: BaseAlgorithm, notes: dict[str, Any]) -> Outcome:
                 log_interval=_LOG[training.algorithm],
             )
             watch.finish()
-        except KeyboardInterrupt:
-            watch.interrupted("by the user")
+        except (KeyboardInterrupt, OSError) as error:
+            # On a full disk this may fail as well; the first error is the one to tell.
+            with suppress(OSError):
+                watch.interrupted(str(error) or "stopped by the user")
             raise
         finally:
             assert model.env is not None
@@ -161,13 +163,19 @@ _LOG = {"ppo": 1, "maskable-ppo": 1, "recurrent-ppo": 1, "sac": 50}
 def _logger(folder: Path, decisions: int) -> Generator[Logger]:
     """TensorBoard logs in which a process that was killed leaves no trace beyond its checkpoint."""
     folder.mkdir(parents=True, exist_ok=True)
-    written = TensorBoardOutputFormat(str(folder))
-    written.writer.close()
-    written.writer = SummaryWriter(str(folder), purge_step=decisions or None)
+    written = _TensorBoard(SummaryWriter(str(folder), purge_step=decisions or None))
     try:
         yield Logger(str(folder), [written])
     finally:
         written.writer.close()
+
+
+class _TensorBoard(TensorBoardOutputFormat):
+    """Writes to a given writer."""
+
+    def __init__(self, writer: SummaryWriter) -> None:
+        self.writer = writer
+        self._is_closed = False
 
 
 @contextmanager
