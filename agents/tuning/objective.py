@@ -14,10 +14,6 @@ from hp_gym.policies import HpcuPolicy
 from hp_gym.vector_env import EVHeatPumpVectorEnv
 
 REWARD: Final = "reference"
-    "base": "balanced",
-    "discomfort_per_k_h": 10.0,
-    "heat_left_credit": 0.25,
-}
 """What the reference policies are trained for, too (configs/rewards/reference.toml)."""
 
 
