@@ -7,7 +7,15 @@ from pathlib import Path
 from typing import Annotated, Any, Final, Literal, Self, TypeAlias
 
 import tomlkit
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    ValidationError,
+    field_validator,
+    model_validator,
+)
 
 from agents.validation import one_line
 from hp_gym import _core
@@ -17,6 +25,7 @@ _LONGEST_BASE_CHAIN: Final = 8
 Count: TypeAlias = Annotated[int, Field(ge=1)]
 Positive: TypeAlias = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative: TypeAlias = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+Pair: TypeAlias = Annotated[list[float], Field(min_length=2, max_length=2)]
 Share: TypeAlias = Annotated[float, Field(ge=0.0, le=1.0)]
 
 
@@ -82,12 +91,22 @@ class NormalisationSettings(_Table):
     reward_clip: Positive = 10.0
     reward_scale: Positive = 1.0
     """Factor on rewards; points of the environment are of the order of a hundredth a second."""
-    typical_cost: list[tuple[float, Positive]] | None = None
+    typical_cost: list[Pair] | None = None
     """Ambient temperatures in degC, rising, and what a trip there costs in points; rewards are divided by it.
 
     A cold trip costs twenty times a mild one: without this, mild weather is learnt last. What is best for a
     trip stays the same.
     """
+
+    @field_validator("typical_cost")
+    @classmethod
+    def _rises(cls, table: list[list[float]] | None) -> list[list[float]] | None:
+        rows = table if table is not None else [[0.0, 1.0]]
+        degc = [row[0] for row in rows]
+        if not rows or degc != sorted(set(degc)) or min(row[1] for row in rows) <= 0.0:
+            message = "must be pairs of rising temperatures and costs above 0"
+            raise ValueError(message)
+        return table
 
 
 class ValidationSettings(_Table):
