@@ -46,7 +46,7 @@ def test_imitation_makes_the_teachers_actions_more_likely_than_those_of_an_untra
     before = agreement()
     passes: list[int] = []
     imitation.warm_start(model, training, 0, lambda: passes.append(1))
-    assert len(passes) == training.imitation.epochs
+    assert len(passes) == training.imitation.rounds * training.imitation.epochs
     assert agreement() > max(0.7, before + 0.1)
 
 

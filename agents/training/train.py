@@ -151,7 +151,8 @@ def _imitate(model: BaseAlgorithm, run: Run, progress: Progress) -> None:
     if not isinstance(training, PPOTraining | MaskablePPOTraining) or training.imitation is None:
         return
     assert isinstance(model, OnPolicyAlgorithm)
-    task = progress.add_task("imitate", total=training.imitation.epochs, told="passes")
+    passes = training.imitation.rounds * training.imitation.epochs
+    task = progress.add_task("imitate", total=passes, told="passes over demonstrations")
     imitation.warm_start(model, training, run.seed, lambda: progress.advance(task))
 
 
