@@ -144,12 +144,12 @@ def fit(
     shuffle = torch.Generator().manual_seed(seed)
     policy.set_training_mode(True)
     for _ in range(settings.epochs):
-        for rows in torch.randperm(len(observations), generator=shuffle).split(settings.batch_size):
+        for rows in torch.randperm(len(observations), generator=shuffle).split(settings.batch_size):  # type: ignore[no-untyped-call]
             values, log_likelihood, _ = policy.evaluate_actions(observations[rows], actions[rows])
             missed = (values.flatten() - returns[rows])[known[rows]]
             loss = -log_likelihood.mean() + settings.value_weight * missed.square().sum() / len(rows)
             optimiser.zero_grad()
-            loss.backward()
+            loss.backward()  # type: ignore[no-untyped-call]
             optimiser.step()
         schedule.step()
         advance()
