@@ -138,6 +138,7 @@ class _Killed(BaseException):
         pytest.param([], id="ppo"),
         pytest.param(["algorithm=maskable-ppo"], id="maskable-ppo"),
         pytest.param([NORMALISED], id="normalised"),
+        pytest.param(["normalisation.typical_cost=[[-20, 60], [20, 3], [40, 20]]"], id="typical cost"),
         pytest.param([*SAC, NORMALISED], id="sac"),
         pytest.param(RECURRENT, id="recurrent-ppo"),
     ],

@@ -58,20 +58,21 @@ class ScaledReward(VecEnvWrapper):
     def __init__(self, venv: VecEnv, scale: RewardScale) -> None:
         super().__init__(venv)
         self._scale = scale
-        self._factors = np.zeros(venv.num_envs)
+        self.factors = np.zeros(venv.num_envs)
+        """Of the trips under way."""
 
     def reset(self) -> Any:
         """Begins trips."""
         observations = self.venv.reset()
-        self._factors = self._scale.factors(np.asarray(observations))
+        self.factors = self._scale.factors(np.asarray(observations))
         return observations
 
     def step_wait(self) -> Any:
         """Drives all environments on."""
         observations, rewards, done, infos = self.venv.step_wait()
-        scaled = (rewards * self._factors).astype(np.float32)
+        scaled = (rewards * self.factors).astype(np.float32)
         # Of the trip that has begun, where one has ended.
-        self._factors = self._scale.factors(np.asarray(observations))
+        self.factors = self._scale.factors(np.asarray(observations))
         return observations, scaled, done, infos
 
 
@@ -125,6 +126,14 @@ def normaliser(envs: VecEnv) -> VecNormalize | None:
     return envs if isinstance(envs, VecNormalize) else None
 
 
+def _scaled(envs: VecEnv) -> ScaledReward | None:
+    while isinstance(envs, VecEnvWrapper):
+        if isinstance(envs, ScaledReward):
+            return envs
+        envs = envs.venv
+    return None
+
+
 def get_state(envs: VecEnv) -> dict[str, Any]:
     """Returns all that the future of environments depends on, as tensors and plain values."""
     inner = envs.unwrapped
@@ -137,6 +146,9 @@ def get_state(envs: VecEnv) -> dict[str, Any]:
         "episode_returns": torch.from_numpy(returns),
         "episode_lengths": torch.from_numpy(lengths),
     }
+    scaled = _scaled(envs)
+    if scaled is not None:
+        told["reward_factors"] = torch.from_numpy(scaled.factors.copy())
     wrapper = normaliser(envs)
     if wrapper is not None:
         told["returns"] = torch.from_numpy(wrapper.returns.copy())
@@ -164,6 +176,9 @@ def set_state(envs: VecEnv, told: dict[str, Any]) -> None:
     data = told["states"].numpy().tobytes()
     inner.venv.set_state([data[end - size : end] for end, size in zip(ends, told["sizes"], strict=True)])
     inner.set_episodes_so_far(told["episode_returns"].numpy(), told["episode_lengths"].numpy())
+    scaled = _scaled(envs)
+    if scaled is not None:
+        scaled.factors = told["reward_factors"].numpy().copy()
     wrapper = normaliser(envs)
     if wrapper is not None:
         wrapper.returns = told["returns"].numpy().copy()
