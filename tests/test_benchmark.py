@@ -119,7 +119,7 @@ def runs(done: dict[str, Any], place: Path) -> pd.DataFrame:
 
 def test_every_controller_drives_every_scenario(runs: pd.DataFrame) -> None:
     assert list(runs.columns) == [*IDENTITY, *KPIS]
-    assert set(runs["controller"]) == {"hpcu", "off", "bench_classes:Same", "random"}
+    assert set(runs["controller"]) == {"hpcu", "hpcu-tuned", "off", "bench_classes:Same", "random"}
     assert all(len(group) == group["scenario"].nunique() == 4 for _, group in runs.groupby("controller"))
     assert set(runs["end_reason"]) == {"arrived"}
     assert dict(zip(runs["scenario"], runs["band"], strict=True))["30-nedc-dark"] == "warm"
@@ -210,8 +210,8 @@ def test_stranded_trips_are_counted_and_leave_no_gain(
     runs = pd.read_parquet(tmp_path / files.RUNS)
     stranded = int(runs.loc[runs["controller"] == "bench_classes:Thirsty", "stranded"].sum())
     assert stranded > 0
-    assert told["stranded_trips"] == {"hpcu": 0, "bench_classes:Thirsty": stranded}
-    assert len(runs) == 8
+    assert told["stranded_trips"] == {"hpcu": 0, "hpcu-tuned": 0, "bench_classes:Thirsty": stranded}
+    assert len(runs) == 12
     gain = told["gains"]["bench_classes:Thirsty_vs_hpcu"]
     assert gain["attributable_energy_pct"] is None
     assert "stranded" in result.stdout

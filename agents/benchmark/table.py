@@ -42,7 +42,6 @@ def _controllers(summary: Mapping[str, Any]) -> Table:
         "com-\npressor\nkWh",
         "PTC\n\nkWh",
         "within\n1 K\n%",
-        "starts\n\n/trip",
         "limit\nbrea-\nches",
         "stran-\nded",
     ):
@@ -56,7 +55,6 @@ def _controllers(summary: Mapping[str, Any]) -> Table:
             f"{kpis['compressor_energy_kwh']:.2f}",
             f"{kpis['ptc_energy_kwh']:.2f}",
             f"{kpis['comfortable_share_pct']:.0f}",
-            f"{kpis['compressor_starts']:.1f}",
             str(summary["limit_breaches"][name]),
             str(summary["stranded_trips"][name]),
         )
