@@ -4,10 +4,14 @@ from typing import Annotated
 
 import typer
 
+from agents.commands.benchmark import benchmark
 from agents.commands.calibrate import calibrate
+from agents.commands.export import export
 from agents.commands.reproduce import reproduce
 from agents.commands.run import run
 from agents.commands.scenarios import scenarios
+from agents.commands.train import train
+from agents.commands.tune import tune
 
 app = typer.Typer(
     name="hp-gym",
@@ -15,7 +19,16 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, scenarios, reproduce, calibrate):
+for command in (
+    benchmark,
+    run,
+    scenarios,
+    reproduce,
+    calibrate,
+    tune,
+    train,
+    export,
+):
     app.command()(command)
 
 

@@ -180,14 +180,16 @@ class Vector:
         """Drives all environments on for one control interval."""
     def action_masks(self) -> _Bools:
         """Options that would be granted in the coming second, one row an environment."""
-    def rule_based_action(self, index: int) -> NDArray[Any]:
-        """What the rule-based controller of an environment would do next."""
+    def rule_based_actions(self) -> NDArray[Any]:
+        """What the rule-based controllers would do next, one row an environment."""
     def look(self, index: int) -> NDArray[np.float64]:
         """Present values of all signals of an environment."""
     def speeds_m_s(self, index: int) -> NDArray[np.float64]:
         """Speed at every full second of the trip of an environment."""
     def kpis(self, index: int) -> dict[str, float]:
         """KPIs of the present trip of an environment."""
+    def summary(self, index: int) -> dict[str, float]:
+        """Totals of the present trip of an environment, as `simulate` gives them."""
     def fork(self, indices: Sequence[int]) -> None:
         """Lets every environment go on from where another one is now."""
     def get_state(self, index: int) -> bytes:

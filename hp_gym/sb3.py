@@ -64,6 +64,14 @@ class SB3VecEnv(VecEnv):
             self.reset_infos[index] = _one(infos, index)
         return observations, rewards.astype(np.float32), done, told
 
+    def episodes_so_far(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Returns returns and lengths of the trips under way."""
+        return self._returns.copy(), self._lengths.copy()
+
+    def set_episodes_so_far(self, returns: NDArray[np.float64], lengths: NDArray[np.int64]) -> None:
+        """Restores what `episodes_so_far` returned, after `venv.set_state`."""
+        self._returns[:], self._lengths[:] = returns, lengths
+
     def close(self) -> None:
         """Ends all environments."""
         self.venv.close()
@@ -93,8 +101,8 @@ class SB3VecEnv(VecEnv):
     ) -> list[Any]:
         """Calls a method of environments.
 
-        `action_masks`, `rule_based_action`, `get_state`, `set_state`, `signals` and `kpis` are those of the
-        single environment.
+        `action_masks`, `rule_based_action`, `get_state`, `set_state`, `signals`, `kpis` and `summary` are
+        those of the single environment.
 
         Raises:
             AttributeError: There is no such method.
@@ -112,7 +120,7 @@ class SB3VecEnv(VecEnv):
             case "set_state":
                 self.venv.set_state([method_args[0]] * len(chosen), chosen)
                 return [None] * len(chosen)
-            case "signals" | "kpis":
+            case "signals" | "kpis" | "summary":
                 return [getattr(self.venv, method_name)(index, **method_kwargs) for index in chosen]
         message = f"the environments have no method `{method_name}` that can be called one by one"
         raise AttributeError(message)

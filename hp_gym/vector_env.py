@@ -189,8 +189,11 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         return self._core.action_masks()
 
     def rule_based_actions(self) -> Action:
-        """Returns what the rule-based controllers would do next, one row an environment."""
-        return np.stack([self._core.rule_based_action(index) for index in range(self.num_envs)])
+        """Returns what the rule-based controllers would do next, one row an environment.
+
+        Their memories move on once a step, however often they are asked.
+        """
+        return self._core.rule_based_actions()
 
     def signals(self, index: int) -> dict[str, float]:
         """Returns the present value of every signal of an environment by name."""
@@ -199,6 +202,13 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
     def kpis(self, index: int) -> dict[str, float]:
         """Returns the KPIs of the present trip of an environment."""
         return self._core.kpis(index)
+
+    def summary(self, index: int) -> dict[str, float]:
+        """Returns the totals of the present trip of an environment, those that `hp_gym.simulate` gives.
+
+        They last until that environment is reset, which `SAME_STEP` does within the step that ends a trip.
+        """
+        return self._core.summary(index)
 
     def get_state(self, indices: Iterable[int] | None = None) -> list[bytes]:
         """Returns the states of environments, all by default."""

@@ -77,6 +77,7 @@ def test_methods_and_attributes_of_environments() -> None:
     envs.step(np.stack(envs.env_method("rule_based_action")))
     envs.env_method("set_state", states[0], indices=[1])
     assert envs.env_method("get_state", indices=[1]) == states
+    assert envs.env_method("summary", indices=[0])[0]["duration_s"] == 20.0
     assert envs.get_attr("num_envs") == [3, 3, 3]
     with pytest.raises(AttributeError, match="no method `drive_home`"):
         envs.env_method("drive_home")

@@ -106,19 +106,38 @@ def test_each_environment_may_have_its_own_scenario() -> None:
     assert envs.reset()[1]["scenario"][0] == "jeffs2019/case1-1"
 
 
-def test_masks_and_rules_are_those_of_single_environments() -> None:
-    envs = EVHeatPumpVectorEnv(4)
-    singles = [EVHeatPumpEnv() for _ in range(4)]
+@pytest.mark.parametrize("continuous", [False, True])
+def test_masks_rules_and_totals_are_those_of_single_environments(continuous: bool) -> None:
+    envs = EVHeatPumpVectorEnv(40, continuous=continuous, threads=2)
+    singles = [EVHeatPumpEnv(continuous=continuous) for _ in range(40)]
     envs.reset(seed=20)
     for index, env in enumerate(singles):
         env.reset(seed=20 + index)
     for _ in range(50):
         np.testing.assert_array_equal(envs.action_masks(), [env.action_masks() for env in singles])
         actions = envs.rule_based_actions()
+        assert (actions.shape, actions.dtype) == (envs.action_space.shape, envs.action_space.dtype)
+        assert envs.action_space.contains(actions)
         np.testing.assert_array_equal(actions, [env.rule_based_action() for env in singles])
+        np.testing.assert_array_equal(actions, envs.rule_based_actions())
         envs.step(actions)
         for env, action in zip(singles, actions, strict=True):
             env.step(action)
+    for index, env in enumerate(singles):
+        assert envs.summary(index) == pytest.approx(env.summary(), rel=0, abs=0, nan_ok=True)
+
+
+def test_totals_of_a_finished_trip_last_until_its_environment_is_reset() -> None:
+    envs = EVHeatPumpVectorEnv(2, scenario=["jeffs2019/case1-1", None], **SHORT)
+    envs.reset(seed=0)
+    terminated = np.zeros(2, dtype=np.bool_)
+    while not terminated[0]:
+        _, _, terminated, _, _ = envs.step(envs.rule_based_actions())
+    assert envs.summary(0)["duration_s"] == 1800.0
+    envs.step(envs.rule_based_actions())
+    assert envs.summary(0)["duration_s"] == 0.0
+    with pytest.raises(ValueError, match="index is 2, but must be below 2"):
+        envs.summary(2)
 
 
 def test_fork_continues_all_from_the_chosen_ones() -> None:

@@ -20,25 +20,22 @@ pub enum Checked<'py> {
 pub fn read<'py>(action: &Bound<'py, PyAny>, setup: &Setup, count: Option<usize>) -> PyResult<Checked<'py>> {
     if setup.continuous {
         let array = typed::<f32>(action, "f", "float32", "floating point")?;
-        let values = checked(&array, setup, count, |row, value| {
-            if (-1.0..=1.0).contains(&value) {
-                return None;
-            }
-            Some((f64::from(value), format!("between -1 and 1 ({})", ACTUATORS[row].description)))
+        let allowed = |_: usize, value: f32| (-1.0..=1.0).contains(&value);
+        let values = checked(&array, setup, count, allowed, |row, value| {
+            (f64::from(value), format!("between -1 and 1 ({})", ACTUATORS[row].description))
         });
         values.map(|()| Checked::Values(array))
     } else {
         let array = typed::<i64>(action, "iu", "int64", "integer")?;
-        let levels = checked(&array, setup, count, |row, level| {
+        let options = setup.actions.option_counts();
+        let allowed = |column: usize, level: i64| (level as u64) < options[column] as u64;
+        let levels = checked(&array, setup, count, allowed, |row, level| {
             let options = action::options(row);
-            if usize::try_from(level).is_ok_and(|level| level < options) {
-                return None;
-            }
             let names = match ACTUATORS[row].scale {
                 Scale::Choice(names) => format!(" ({})", names.join(", ")),
                 Scale::Linear | Scale::OffThenLogarithmic => String::new(),
             };
-            Some((level as f64, format!("between 0 and {}{names}", options - 1)))
+            (level as f64, format!("between 0 and {}{names}", options - 1))
         });
         levels.map(|()| Checked::Levels(array))
     }
@@ -73,7 +70,8 @@ fn checked<T: numpy::Element + Copy>(
     array: &PyReadonlyArrayDyn<'_, T>,
     setup: &Setup,
     count: Option<usize>,
-    refuse: impl Fn(usize, T) -> Option<(f64, String)>,
+    allowed: impl Fn(usize, T) -> bool,
+    refuse: impl Fn(usize, T) -> (f64, String),
 ) -> PyResult<()> {
     let rows = setup.actions.rows();
     let shape = array.shape();
@@ -91,10 +89,14 @@ fn checked<T: numpy::Element + Copy>(
             format!("action has the shape {shape:?}, but must have {allowed}: {}", names.join(", "));
         return Err(PyValueError::new_err(message));
     }
-    for (place, &value) in array.as_slice()?.iter().enumerate() {
-        let (index, column) = (place / rows.len(), place % rows.len());
-        let row = rows[column];
-        if let Some((value, allowed)) = refuse(row, value) {
+    let width = rows.len();
+    let values = array.as_slice()?;
+    let fits = |row: &[T]| (0..width).fold(true, |fits, column| fits & allowed(column, row[column]));
+    let Some(index) = values.chunks_exact(width).position(|row| !fits(row)) else { return Ok(()) };
+    for (column, &row) in rows.iter().enumerate() {
+        let value = values[index * width + column];
+        if !allowed(column, value) {
+            let (value, allowed) = refuse(row, value);
             let position = if count.is_some() { format!("{index}, {column}") } else { column.to_string() };
             let name = ACTUATORS[row].name;
             let message = format!("action[{position}] ({name}) is {value}, but must be {allowed}");

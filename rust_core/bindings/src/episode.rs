@@ -56,11 +56,11 @@ pub fn speeds_m_s(episode: &episode::Episode) -> Vec<f64> {
 /// What is told of a trip when it begins.
 pub fn trip_info<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<Bound<'py, PyDict>> {
     let info = PyDict::new(py);
-    if let Some((trip, experiment)) = episode.trip() {
-        info.set_item(intern!(py, "scenario"), &trip.origin)?;
-        info.set_item(intern!(py, "cycle"), &trip.scenario.cycle)?;
+    if let Some((origin, experiment)) = episode.trip() {
+        info.set_item(intern!(py, "scenario"), origin)?;
+        info.set_item(intern!(py, "cycle"), &experiment.scenario.cycle)?;
         info.set_item(intern!(py, "trip_s"), experiment.cycle.duration_s())?;
-        let ambient_degc = trip.scenario.climate.ambient_temperature_degc.0;
+        let ambient_degc = experiment.scenario.climate.ambient_temperature_degc.0;
         info.set_item(intern!(py, "ambient_temperature_degc"), ambient_degc)?;
     }
     Ok(info)
@@ -85,8 +85,19 @@ pub fn kpis<'py>(py: Python<'py>, terms: &Terms, weights: &RewardParameters) -> 
     Ok(dict)
 }
 
+/// Totals of a trip by name.
+pub fn summary<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    if let Some(run) = episode.run() {
+        for (name, value) in run.summary.values() {
+            dict.set_item(name, value)?;
+        }
+    }
+    Ok(dict)
+}
+
 /// A command as an action of an environment: nearest options, or values.
-pub fn as_action<'py>(py: Python<'py>, setup: &Setup, command: &Command) -> Bound<'py, PyAny> {
+fn as_action<'py>(py: Python<'py>, setup: &Setup, command: &Command) -> Bound<'py, PyAny> {
     let rows = setup.actions.rows();
     if setup.continuous {
         let values: Vec<f32> = rows.iter().map(|&row| command.0[row]).collect();
@@ -157,7 +168,11 @@ impl Episode {
 
     /// Number of options of each action; empty in continuous mode.
     fn option_counts(&self) -> Vec<usize> {
-        if self.inner.setup().continuous { Vec::new() } else { self.inner.setup().actions.option_counts() }
+        if self.inner.setup().continuous {
+            Vec::new()
+        } else {
+            self.inner.setup().actions.option_counts().to_vec()
+        }
     }
 
     fn observation_rows(&self) -> Vec<ObservedRow> {
@@ -194,8 +209,8 @@ impl Episode {
         match actions::read(action, setup, None)? {
             Checked::Values(array) => values[..rows.len()].copy_from_slice(array.as_slice()?),
             Checked::Levels(array) => {
-                for ((value, &row), &level) in values.iter_mut().zip(rows).zip(array.as_slice()?) {
-                    *value = action::option_value(row, level as usize);
+                for (column, &level) in array.as_slice()?.iter().enumerate() {
+                    values[column] = setup.actions.value(column, level as usize);
                 }
             }
         }
@@ -252,13 +267,7 @@ impl Episode {
     /// Totals of the trip so far, as `simulate` gives them.
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.require_begun(py)?;
-        let dict = PyDict::new(py);
-        if let Some(run) = self.inner.run() {
-            for (name, value) in run.summary.values() {
-                dict.set_item(name, value)?;
-            }
-        }
-        Ok(dict)
+        summary(py, &self.inner)
     }
 
     fn get_state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {

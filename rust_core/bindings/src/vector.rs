@@ -1,11 +1,11 @@
 //! Many environments that step together, the interpreter's lock released.
 
 use crate::actions::{self, Checked};
-use crate::episode::{as_action, kpis, looked, parts_info, setup, source, speeds_m_s, trip_info};
+use crate::episode::{kpis, looked, parts_info, setup, source, speeds_m_s, summary, trip_info};
 use crate::errors::{gymnasium_error, to_python};
 use hp_episode::episode::Episode;
 use hp_episode::setup::{Setup, Source};
-use hp_episode::vector::{self, Actions, Autoreset, Events, PARTS, Results};
+use hp_episode::vector::{self, Actions, ActionsMut, Autoreset, Events, PARTS, Results};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -221,13 +221,24 @@ impl Vector {
         Ok(array)
     }
 
-    /// Action of the rule-based controller of one environment.
-    fn rule_based_action<'py>(&mut self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
+    /// What the rule-based controllers would do next, one row an environment.
+    fn rule_based_actions<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.require_ready(py)?;
-        self.check_index(index)?;
-        let command = self.inner.episodes_mut()[index].rule_based_command();
-        let command = command.ok_or_else(|| gymnasium_error(py, "ResetNeeded", "call reset() first"))?;
-        Ok(as_action(py, &self.setup, &command))
+        let shape = [self.inner.episodes().len(), self.setup.actions.rows().len()];
+        let inner = &mut self.inner;
+        if self.setup.continuous {
+            let array = PyArray2::zeros(py, shape, false);
+            let mut values = array.readwrite();
+            let values = values.as_slice_mut()?;
+            py.detach(|| inner.rule_based_actions(ActionsMut::Values(values)));
+            Ok(array.into_any())
+        } else {
+            let array = PyArray2::zeros(py, shape, false);
+            let mut levels = array.readwrite();
+            let levels = levels.as_slice_mut()?;
+            py.detach(|| inner.rule_based_actions(ActionsMut::Levels(levels)));
+            Ok(array.into_any())
+        }
     }
 
     /// Present values of all signals of one environment.
@@ -249,6 +260,13 @@ impl Vector {
         self.require_ready(py)?;
         self.check_index(index)?;
         kpis(py, &self.inner.episodes()[index].terms().copied().unwrap_or_default(), &self.setup.reward)
+    }
+
+    /// Totals of the present trip of one environment, as `simulate` gives them.
+    fn summary<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {
+        self.require_ready(py)?;
+        self.check_index(index)?;
+        summary(py, &self.inner.episodes()[index])
     }
 
     /// Lets every environment go on from where another one is now.

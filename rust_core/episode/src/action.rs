@@ -2,8 +2,8 @@
 
 use hp_plant::circuits::branches::{self, Branch};
 use hp_plant::command::{
-    ACTUATOR_COUNT, ACTUATORS, ActuatorRanges, BLOWER, Command, Connection, Demand, MAXIMUM_REQUEST_W,
-    Member, RECIRCULATION, REQUESTS, Scale,
+    ACTUATOR_COUNT, ACTUATORS, BLOWER, Command, Connection, Demand, MAXIMUM_REQUEST_W, Member, RECIRCULATION,
+    REQUESTS, Scale,
 };
 use hp_plant::control::heat_demand_commander;
 use hp_plant::error::{PlantError, PlantResult};
@@ -25,6 +25,9 @@ const LOWEST_RUNNING: f64 = -0.9;
 pub struct ActionTable {
     rows: Vec<usize>,
     selected: [bool; ACTUATOR_COUNT],
+    option_counts: Vec<usize>,
+    /// Normalised value of every option, row by row.
+    values: Vec<[f32; LEVELS]>,
 }
 
 /// Number of options of a row.
@@ -72,7 +75,12 @@ impl ActionTable {
     /// # Errors
     /// An unknown name, one given twice, or none at all.
     pub fn new(names: &[String]) -> PlantResult<Self> {
-        let mut table = Self { rows: Vec::with_capacity(names.len()), selected: [false; ACTUATOR_COUNT] };
+        let mut table = Self {
+            rows: Vec::with_capacity(names.len()),
+            selected: [false; ACTUATOR_COUNT],
+            option_counts: Vec::new(),
+            values: Vec::new(),
+        };
         for name in names {
             let row = ACTUATORS.iter().position(|actuator| actuator.name == name).ok_or_else(|| {
                 let available = ACTUATORS.map(|actuator| actuator.name).join(", ");
@@ -86,6 +94,8 @@ impl ActionTable {
                 });
             }
             table.rows.push(row);
+            table.option_counts.push(options(row));
+            table.values.push(std::array::from_fn(|option| option_value(row, option)));
         }
         if table.rows.is_empty() {
             return Err(PlantError::InvalidArgument {
@@ -103,6 +113,12 @@ impl ActionTable {
         &self.rows
     }
 
+    /// Normalised value of an option of the row in a column of an action.
+    #[must_use]
+    pub fn value(&self, column: usize, option: usize) -> f32 {
+        self.values[column][option]
+    }
+
     /// Whether a row is selected.
     #[must_use]
     pub fn selects(&self, row: usize) -> bool {
@@ -111,14 +127,14 @@ impl ActionTable {
 
     /// Number of options of each selected row.
     #[must_use]
-    pub fn option_counts(&self) -> Vec<usize> {
-        self.rows.iter().map(|&row| options(row)).collect()
+    pub fn option_counts(&self) -> &[usize] {
+        &self.option_counts
     }
 
     /// Length of the mask: all options of all selected rows.
     #[must_use]
     pub fn mask_length(&self) -> usize {
-        self.rows.iter().map(|&row| options(row)).sum()
+        self.option_counts.iter().sum()
     }
 
     /// Which options the plant would grant in the coming second, row by row.
@@ -233,9 +249,9 @@ impl Defaults {
         experiment: &Experiment,
         time_s: f64,
     ) -> Command {
-        let ranges = &experiment.plant.ranges;
         let mut command = self.command;
         if self.requests_change {
+            let ranges = &experiment.plant.ranges;
             let requests_w = heat_demand_commander::requests_w(&experiment.scenario.heat_demand, time_s);
             for (i, request_w) in requests_w.into_iter().enumerate() {
                 command.0[REQUESTS + i] = ranges.normalise(REQUESTS + i, request_w);
@@ -245,21 +261,25 @@ impl Defaults {
             command.0[row] = value;
         }
         if !table.selects(RECIRCULATION) {
-            let cooling = asked(ranges, &command, Member::Cabin) == Connection::Chiller;
+            let cooling = asked(&command, Member::Cabin) == Connection::Chiller;
             command.0[RECIRCULATION] = self.recirculation(cooling);
         }
-        if !table.selects(AMBIENT_REQUEST) && asked(ranges, &command, Member::Ambient) == Connection::Htc {
+        if !table.selects(AMBIENT_REQUEST) && asked(&command, Member::Ambient) == Connection::Htc {
             command.0[AMBIENT_REQUEST] = self.unlimited_request;
         }
         command
     }
 }
 
-/// Connection that a command asks for.
+/// Connection that a command asks for, as [`ActuatorRanges::physical`] reads it.
+///
+/// [`ActuatorRanges::physical`]: hp_plant::command::ActuatorRanges::physical
 #[must_use]
-pub fn asked(ranges: &ActuatorRanges, command: &Command, member: Member) -> Connection {
-    let row = member as usize;
-    member.options()[ranges.physical(row, command.0[row]) as usize]
+pub fn asked(command: &Command, member: Member) -> Connection {
+    let options = member.options();
+    let share = 0.5 * (f64::from(command.0[member as usize]) + 1.0);
+    // The conversion rounds towards zero and holds what is below at zero.
+    options[((share * options.len() as f64) as usize).min(options.len() - 1)]
 }
 
 #[cfg(test)]
@@ -288,6 +308,19 @@ mod tests {
         let ratio = (high / low).powf(1.0 / 9.0);
         for pair in powers[1..].windows(2) {
             assert!((pair[1] / pair[0] / ratio - 1.0).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn connections_asked_for_are_those_that_the_plant_reads() {
+        let experiment = Experiment::load("jeffs2019/case1-1", None, &[]).expect("built in");
+        let mut command = Command([0.0; ACTUATOR_COUNT]);
+        for value in (-1000..=1000).map(|thousandth| thousandth as f32 / 1000.0) {
+            command.0.fill(value);
+            let demand = experiment.plant.ranges.decode(&command);
+            for member in Member::ALL {
+                assert_eq!(asked(&command, member), demand.connections[member as usize], "{value}");
+            }
         }
     }
 

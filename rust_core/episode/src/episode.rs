@@ -43,7 +43,8 @@ struct Progress {
 /// A trip in progress.
 #[derive(Debug, Clone)]
 struct Current {
-    trip: Trip,
+    origin: String,
+    window: Option<(usize, usize)>,
     experiment: Experiment,
     conditions: ReferenceConditions,
     defaults: Defaults,
@@ -70,7 +71,8 @@ pub struct Episode {
 
 impl Current {
     fn of(setup: &Setup, trip: Trip) -> PlantResult<Self> {
-        let experiment = setup.garage.build(&trip)?;
+        let (origin, window) = (trip.origin.clone(), trip.window);
+        let experiment = setup.garage.build(trip)?;
         let run = experiment.start();
         let defaults = Defaults::of(&experiment);
         let off: Vec<f32> = setup.actions.rows().iter().map(|&row| action::option_value(row, 0)).collect();
@@ -81,7 +83,14 @@ impl Current {
             ruled: None,
             end: None,
         };
-        Ok(Self { conditions: ReferenceConditions::of(&experiment), defaults, trip, experiment, progress })
+        let conditions = ReferenceConditions::of(&experiment);
+        Ok(Self { origin, window, experiment, conditions, defaults, progress })
+    }
+
+    /// What defines the trip.
+    fn trip(&self) -> Trip {
+        let scenario = self.experiment.scenario.clone();
+        Trip { origin: self.origin.clone(), scenario, window: self.window }
     }
 }
 
@@ -179,7 +188,7 @@ impl Episode {
         };
         let strength = self.setup.sensor_noise;
         let noise = &mut self.noise;
-        let blur = || if strength > 0.0 { strength * noise.normal() } else { 0.0 };
+        let blur = (strength > 0.0).then_some(|| strength * noise.normal());
         self.setup.observations.write(&look, blur, values);
     }
 
@@ -203,10 +212,10 @@ impl Episode {
         progress.ruled
     }
 
-    /// The trip in progress.
+    /// Origin of the trip in progress, and what it is made of.
     #[must_use]
-    pub fn trip(&self) -> Option<(&Trip, &Experiment)> {
-        self.current.as_ref().map(|current| (&current.trip, &current.experiment))
+    pub fn trip(&self) -> Option<(&str, &Experiment)> {
+        self.current.as_ref().map(|current| (current.origin.as_str(), &current.experiment))
     }
 
     /// The run in progress.
@@ -232,7 +241,7 @@ impl Episode {
     /// # Errors
     /// See [`snapshot::pack`].
     pub fn to_bytes(&self) -> PlantResult<Vec<u8>> {
-        let current = self.current.as_ref().map(|current| (current.trip.clone(), current.progress));
+        let current = self.current.as_ref().map(|current| (current.trip(), current.progress));
         let snapshot = Snapshot { random: self.random.clone(), noise: self.noise.clone(), current };
         snapshot::pack(self.setup.fingerprint, &snapshot)
     }

@@ -2,6 +2,7 @@
 
 use hp_plant::config::library::Override;
 use hp_plant::config::scenario::ScenarioParameters;
+use hp_plant::control::hpcu::Hpcu;
 use hp_plant::drive_cycle::DriveCycle;
 use hp_plant::error::PlantResult;
 use hp_plant::plant::Plant;
@@ -93,18 +94,19 @@ impl Garage {
     ///
     /// # Errors
     /// Its origin or cycle cannot be loaded.
-    pub fn build(&self, trip: &Trip) -> PlantResult<Experiment> {
+    pub fn build(&self, trip: Trip) -> PlantResult<Experiment> {
         let origin = self.experiment(&trip.origin)?;
         let mut cycle = self.cycle(&trip.scenario.cycle)?;
         if let Some((first_s, last_s)) = trip.window {
             cycle = Arc::new(cycle.window(first_s, last_s));
         }
         Ok(Experiment {
-            scenario: trip.scenario.clone(),
+            hpcu: Hpcu::of(&origin.rules, &trip.scenario),
+            scenario: trip.scenario,
             plant: Arc::clone(&origin.plant),
             cycle,
             controller: origin.controller.clone(),
-            hpcu: origin.hpcu.clone(),
+            rules: Arc::clone(&origin.rules),
         })
     }
 }

@@ -13,4 +13,5 @@ pub mod reward;
 pub mod scenario_sampler;
 pub mod setup;
 pub mod snapshot;
+pub mod threads;
 pub mod vector;

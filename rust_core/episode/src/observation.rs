@@ -4,6 +4,7 @@ use crate::action::ActionTable;
 use hp_plant::circuits::branches::Branch;
 use hp_plant::command::{ACTUATORS, Command};
 use hp_plant::error::{PlantError, PlantResult};
+use hp_plant::flows::Flow;
 use hp_plant::signals::{self, Signal, View};
 use hp_plant::simulation::Experiment;
 
@@ -130,21 +131,6 @@ impl Observed {
     fn measured(&self) -> bool {
         matches!(self.source, Source::Signal(_) | Source::Solar)
     }
-
-    fn read(&self, look: &Look<'_>) -> f64 {
-        match self.source {
-            Source::Signal(signal) => signal.read(&look.view),
-            Source::Solar => look.view.disturbance.solar_gain_w,
-            Source::Occupants => look.view.disturbance.occupants,
-            Source::Branch(branch) => f64::from(u8::from(look.view.state.connected[branch as usize])),
-            Source::Asked(actuator) => f64::from(look.asked.0[actuator]),
-            Source::SpeedAhead(seconds) => {
-                let speeds_m_s = look.experiment.cycle.speeds_m_s();
-                speeds_m_s[(look.steps + seconds).min(speeds_m_s.len() - 1)]
-            }
-            Source::TimeLeft => look.experiment.cycle.duration_s().saturating_sub(look.steps) as f64,
-        }
-    }
 }
 
 /// What a row is read from.
@@ -204,11 +190,83 @@ pub fn all(actions: &ActionTable) -> Vec<Observed> {
     rows
 }
 
+/// Places of an observation by where their values come from: read without asking each row what kind it is.
+#[derive(Debug, Clone, Default)]
+struct Places {
+    signals: Vec<(usize, Signal)>,
+    flows: Vec<(usize, Flow)>,
+    branches: Vec<(usize, Branch)>,
+    asked: Vec<(usize, usize)>,
+    speeds_ahead: Vec<(usize, usize)>,
+    solar: Option<usize>,
+    occupants: Option<usize>,
+    time_left: Option<usize>,
+}
+
+impl Places {
+    fn of(rows: &[Observed]) -> Self {
+        let mut places = Self::default();
+        for (place, row) in rows.iter().enumerate() {
+            match row.source {
+                Source::Signal(signal) => match signal.flow() {
+                    Some(flow) => places.flows.push((place, flow)),
+                    None => places.signals.push((place, signal)),
+                },
+                Source::Solar => places.solar = Some(place),
+                Source::Occupants => places.occupants = Some(place),
+                Source::Branch(branch) => places.branches.push((place, branch)),
+                Source::Asked(actuator) => places.asked.push((place, actuator)),
+                Source::SpeedAhead(seconds) => places.speeds_ahead.push((place, seconds)),
+                Source::TimeLeft => places.time_left = Some(place),
+            }
+        }
+        places
+    }
+
+    /// Writes the values of all rows.
+    fn read(&self, look: &Look<'_>, values: &mut [f64]) {
+        for &(place, signal) in &self.signals {
+            values[place] = signal.read(&look.view);
+        }
+        for &(place, flow) in &self.flows {
+            values[place] = look.view.record.map_or(0.0, |record| record.flows[flow]);
+        }
+        for &(place, branch) in &self.branches {
+            values[place] = f64::from(u8::from(look.view.state.connected[branch as usize]));
+        }
+        for &(place, actuator) in &self.asked {
+            values[place] = f64::from(look.asked.0[actuator]);
+        }
+        let cycle = &look.experiment.cycle;
+        for &(place, seconds) in &self.speeds_ahead {
+            let speeds_m_s = cycle.speeds_m_s();
+            values[place] = speeds_m_s[(look.steps + seconds).min(speeds_m_s.len() - 1)];
+        }
+        if let Some(place) = self.solar {
+            values[place] = look.view.disturbance.solar_gain_w;
+        }
+        if let Some(place) = self.occupants {
+            values[place] = look.view.disturbance.occupants;
+        }
+        if let Some(place) = self.time_left {
+            values[place] = cycle.duration_s().saturating_sub(look.steps) as f64;
+        }
+    }
+}
+
 /// Selected rows.
 #[derive(Debug, Clone)]
 pub struct ObservationTable {
     rows: Vec<Observed>,
+    /// What is shown as -1.
+    lows: Vec<f64>,
+    /// How much of the scale a unit takes.
+    gains: Vec<f64>,
+    places: Places,
 }
+
+/// More rows than there are; a test counts them.
+const ROWS: usize = 192;
 
 impl ObservationTable {
     /// Rows by name; a group stands for its rows.
@@ -250,7 +308,10 @@ impl ObservationTable {
                 allowed: "must name at least one row".into(),
             });
         }
-        Ok(Self { rows })
+        let lows = rows.iter().map(|row| row.low).collect();
+        let gains = rows.iter().map(|row| 2.0 / (row.high - row.low)).collect();
+        let places = Places::of(&rows);
+        Ok(Self { rows, lows, gains, places })
     }
 
     /// Rows in the order of an observation.
@@ -259,12 +320,20 @@ impl ObservationTable {
         &self.rows
     }
 
-    /// Writes an observation; `blur` gives the noise of each measured row.
-    pub fn write(&self, look: &Look<'_>, mut blur: impl FnMut() -> f64, values: &mut [f32]) {
-        for (row, value) in self.rows.iter().zip(values) {
-            let scaled = 2.0 * (row.read(look) - row.low) / (row.high - row.low) - 1.0;
-            let noise = if row.measured() { blur() } else { 0.0 };
-            *value = (scaled + noise).clamp(-1.0, 1.0) as f32;
+    /// Writes an observation; `blur`, where there is noise, gives that of each measured row.
+    pub fn write(&self, look: &Look<'_>, blur: Option<impl FnMut() -> f64>, values: &mut [f32]) {
+        let mut numbers = [0.0; ROWS];
+        let numbers = &mut numbers[..self.rows.len()];
+        self.places.read(look, numbers);
+        if let Some(mut blur) = blur {
+            // In units of half the range.
+            for ((row, number), gain) in self.rows.iter().zip(numbers.iter_mut()).zip(&self.gains) {
+                *number += if row.measured() { blur() / gain } else { 0.0 };
+            }
+        }
+        for (((value, number), low), gain) in values.iter_mut().zip(numbers).zip(&self.lows).zip(&self.gains)
+        {
+            *value = ((*number - low) * gain - 1.0).clamp(-1.0, 1.0) as f32;
         }
     }
 }
@@ -288,6 +357,7 @@ mod tests {
             assert_eq!(rows.iter().filter(|row| row.name == signal.name).count(), 1, "{}", signal.name);
         }
         assert!(rows.iter().all(|row| row.low < row.high && !row.description.is_empty()));
+        assert!(rows.len() - crate::action::DEFAULT_ROWS + ACTUATORS.len() <= ROWS);
     }
 
     #[test]

@@ -25,6 +25,8 @@ pub struct ReferenceTrip {
 pub struct ReferenceConditions {
     air: AirProperties,
     base_load_w: f64,
+    /// Spin loss of the transmission at 1 m/s, proportional to speed.
+    spin_loss_w_s_m: f64,
 }
 
 impl ReferenceConditions {
@@ -37,6 +39,7 @@ impl ReferenceConditions {
         };
         Self {
             air: air::at_temperature(experiment.scenario.climate.ambient_temperature_degc.kelvin()),
+            spin_loss_w_s_m: vehicle.transmission.spin_loss_w(REFERENCE_TEMPERATURE.kelvin(), 1.0),
             base_load_w: vehicle.controls.auxiliary_power_w
                 + pump(&vehicle.htc.circuit)
                 + pump(&vehicle.chiller.circuit)
@@ -70,7 +73,7 @@ impl ReferenceTrip {
             transmission: &vehicle.transmission,
             regeneration: &vehicle.regeneration,
             speed_m_s,
-            spin_loss_w: vehicle.transmission.spin_loss_w(temperature_k, speed_m_s),
+            spin_loss_w: conditions.spin_loss_w_s_m * speed_m_s,
         };
         let circuit = plant.battery.during(&self.battery, temperature_k, CONTROL_PERIOD_S);
         let limits = circuit.power_limits();

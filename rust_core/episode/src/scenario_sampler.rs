@@ -181,7 +181,7 @@ mod tests {
         let mut lengths: Vec<usize> = trips
             .iter()
             .take(200)
-            .map(|trip| garage.build(trip).expect("built in").cycle.duration_s())
+            .map(|trip| garage.build(trip.clone()).expect("built in").cycle.duration_s())
             .collect();
         lengths.sort_unstable();
         lengths.dedup();

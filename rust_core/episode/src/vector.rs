@@ -6,16 +6,13 @@ use crate::action;
 use crate::episode::Episode;
 use crate::reward::{PART_NAMES, Terms};
 use crate::setup::Source;
+use crate::threads::{Stretch, Threads};
 use hp_plant::error::{PlantError, PlantResult};
 use hp_plant::simulation::EndReason;
-use rayon::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::sync::{Mutex, PoisonError};
 
 /// Parts of a reward.
 pub const PARTS: usize = PART_NAMES.len();
-
-/// Environments that a thread takes at a time.
-const BATCH: usize = 16;
 
 /// What happens to an environment whose trip has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,6 +32,15 @@ pub enum Actions<'a> {
     Levels(&'a [i64]),
     /// Normalised values.
     Values(&'a [f32]),
+}
+
+/// Where actions of all environments go, row by row.
+#[derive(Debug)]
+pub enum ActionsMut<'a> {
+    /// Options.
+    Levels(&'a mut [i64]),
+    /// Normalised values.
+    Values(&'a mut [f32]),
 }
 
 /// Where the results of a step go, one entry an environment.
@@ -84,15 +90,34 @@ pub struct Vector {
     over: Vec<bool>,
     autoreset: Autoreset,
     step_limit: Option<u64>,
-    threads: usize,
-    pool: Option<Pool>,
+    threads: Threads,
 }
 
-/// Threads of this process; a fork does not inherit them.
-#[derive(Debug)]
-struct Pool {
-    process: u32,
-    threads: ThreadPool,
+/// What the threads tell of a step, in any order.
+#[derive(Default)]
+struct Told {
+    events: Events,
+    errors: Vec<(usize, PlantError)>,
+}
+
+/// Consecutive environments with their entries of all results.
+struct Batch<'a> {
+    first: usize,
+    episodes: &'a mut [Episode],
+    elapsed: &'a mut [u64],
+    over: &'a mut [bool],
+    observations: &'a mut [f32],
+    rewards: &'a mut [f64],
+    terminated: &'a mut [bool],
+    truncated: &'a mut [bool],
+    parts: [&'a mut [f64]; PARTS],
+}
+
+/// Consecutive environments with their entries of one array.
+struct Pairs<'a, T> {
+    episodes: &'a mut [Episode],
+    entries: &'a mut [T],
+    width: usize,
 }
 
 /// What one environment works on.
@@ -106,9 +131,49 @@ struct Job<'a> {
     terminated: &'a mut bool,
     truncated: &'a mut bool,
     parts: [f64; PARTS],
-    finished: Option<Finished>,
-    reset: bool,
-    error: Option<PlantError>,
+    told: &'a Mutex<Told>,
+}
+
+/// Cuts off the first entries of a slice.
+fn cut<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    slice.split_off_mut(..count.min(slice.len())).unwrap_or_default()
+}
+
+impl Stretch for Batch<'_> {
+    fn len(&self) -> usize {
+        self.episodes.len()
+    }
+
+    fn take(&mut self, count: usize) -> Self {
+        let width = self.observations.len().checked_div(self.episodes.len()).unwrap_or_default();
+        let first = self.first;
+        self.first += count.min(self.episodes.len());
+        Self {
+            first,
+            episodes: cut(&mut self.episodes, count),
+            elapsed: cut(&mut self.elapsed, count),
+            over: cut(&mut self.over, count),
+            observations: cut(&mut self.observations, count * width),
+            rewards: cut(&mut self.rewards, count),
+            terminated: cut(&mut self.terminated, count),
+            truncated: cut(&mut self.truncated, count),
+            parts: self.parts.each_mut().map(|part| cut(part, count)),
+        }
+    }
+}
+
+impl<T: Send> Stretch for Pairs<'_, T> {
+    fn len(&self) -> usize {
+        self.episodes.len()
+    }
+
+    fn take(&mut self, count: usize) -> Self {
+        Self {
+            episodes: cut(&mut self.episodes, count),
+            entries: cut(&mut self.entries, count * self.width),
+            width: self.width,
+        }
+    }
 }
 
 impl Vector {
@@ -127,8 +192,7 @@ impl Vector {
             over: vec![false; count],
             autoreset,
             step_limit,
-            threads: threads.max(1),
-            pool: None,
+            threads: Threads::new(threads),
         }
     }
 
@@ -146,7 +210,7 @@ impl Vector {
     /// Number of threads.
     #[must_use]
     pub fn threads(&self) -> usize {
-        self.threads
+        self.threads.count()
     }
 
     /// Environments whose trip is over and that wait for their reset.
@@ -210,70 +274,100 @@ impl Vector {
     /// A file of a new trip cannot be loaded.
     pub fn step(&mut self, actions: Actions<'_>, results: &mut Results<'_>) -> PlantResult<Events> {
         let count = self.episodes.len();
-        let Some(first) = self.episodes.first() else { return Ok(Events::default()) };
-        let width = first.setup().observations.rows().len();
-        let threads = self.threads;
-        self.start_threads();
-        let Self { episodes, elapsed, over, autoreset, step_limit, pool, .. } = self;
-        let mut jobs: Vec<Job<'_>> = episodes
-            .iter_mut()
-            .zip(elapsed.iter_mut())
-            .zip(over.iter_mut())
-            .zip(results.observations.chunks_mut(width))
-            .zip(results.rewards.iter_mut())
-            .zip(results.terminated.iter_mut())
-            .zip(results.truncated.iter_mut())
-            .enumerate()
-            .map(|(index, ((((((episode, elapsed), over), observation), reward), terminated), truncated))| {
-                Job {
-                    index,
-                    episode,
-                    elapsed,
-                    over,
-                    observation,
-                    reward,
-                    terminated,
-                    truncated,
-                    parts: [0.0; PARTS],
-                    finished: None,
-                    reset: false,
-                    error: None,
-                }
-            })
-            .collect();
-        let work = |job: &mut Job<'_>| job.work(actions, *autoreset, *step_limit);
-        match pool {
-            Some(pool) if threads > 1 => {
-                pool.threads.install(|| jobs.par_iter_mut().with_min_len(BATCH).for_each(work));
-            }
-            _ => jobs.iter_mut().for_each(work),
+        let mut parts = results.parts.chunks_mut(count.max(1));
+        let all = Batch {
+            first: 0,
+            episodes: &mut self.episodes,
+            elapsed: &mut self.elapsed,
+            over: &mut self.over,
+            observations: results.observations,
+            rewards: results.rewards,
+            terminated: results.terminated,
+            truncated: results.truncated,
+            parts: std::array::from_fn(|_| parts.next().unwrap_or_default()),
+        };
+        let (autoreset, step_limit) = (self.autoreset, self.step_limit);
+        let told = Mutex::default();
+        self.threads.work(all, |batch: Batch<'_>| batch.step(actions, autoreset, step_limit, &told));
+        let Told { mut events, errors } = told.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, error)) = errors.into_iter().min_by_key(|(index, _)| *index) {
+            return Err(error);
         }
-        let mut events = Events::default();
-        for job in jobs {
-            if let Some(error) = job.error {
-                return Err(error);
-            }
-            for (part, value) in job.parts.into_iter().enumerate() {
-                results.parts[part * count + job.index] = value;
-            }
-            events.finished.extend(job.finished);
-            if job.reset {
-                events.reset.push(job.index);
-            }
-        }
+        events.finished.sort_unstable_by_key(|trip| trip.index);
+        events.reset.sort_unstable();
         Ok(events)
     }
 
-    fn start_threads(&mut self) {
-        let process = std::process::id();
-        if let Some(old) = self.pool.take_if(|pool| pool.process != process) {
-            // Its threads stayed in the parent process; waiting for them would never end.
-            std::mem::forget(old);
+    /// Writes what the rule-based controllers would do next with the selected rows, environment by environment;
+    /// nothing where no trip has begun.
+    pub fn rule_based_actions(&mut self, actions: ActionsMut<'_>) {
+        let Some(first) = self.episodes.first() else { return };
+        let width = first.setup().actions.rows().len();
+        match actions {
+            ActionsMut::Levels(levels) => self.on_each(levels, width, |episode, levels| {
+                if let Some(command) = episode.rule_based_command() {
+                    let rows = episode.setup().actions.rows().iter();
+                    for (level, &row) in levels.iter_mut().zip(rows) {
+                        *level = action::nearest_option(row, command.0[row]) as i64;
+                    }
+                }
+            }),
+            ActionsMut::Values(values) => self.on_each(values, width, |episode, values| {
+                if let Some(command) = episode.rule_based_command() {
+                    for (value, &row) in values.iter_mut().zip(episode.setup().actions.rows()) {
+                        *value = command.0[row];
+                    }
+                }
+            }),
         }
-        if self.pool.is_none() && self.threads > 1 {
-            // Where no threads are to be had the calling one does all the work.
-            let threads = ThreadPoolBuilder::new().num_threads(self.threads).build().ok();
-            self.pool = threads.map(|threads| Pool { process, threads });
+    }
+
+    /// Works on every environment and its entries of an array.
+    fn on_each<T: Send>(
+        &mut self,
+        entries: &mut [T],
+        width: usize,
+        work: impl Fn(&mut Episode, &mut [T]) + Sync,
+    ) {
+        let all = Pairs { episodes: &mut self.episodes, entries, width };
+        self.threads.work(all, |pairs: Pairs<'_, T>| {
+            for (episode, entries) in pairs.episodes.iter_mut().zip(pairs.entries.chunks_mut(width)) {
+                work(episode, entries);
+            }
+        });
+    }
+}
+
+impl Batch<'_> {
+    fn step(
+        mut self,
+        actions: Actions<'_>,
+        autoreset: Autoreset,
+        step_limit: Option<u64>,
+        told: &Mutex<Told>,
+    ) {
+        let Some(first) = self.episodes.first() else { return };
+        let width = first.setup().observations.rows().len();
+        for (place, (episode, observation)) in
+            self.episodes.iter_mut().zip(self.observations.chunks_mut(width)).enumerate()
+        {
+            let mut job = Job {
+                index: self.first + place,
+                episode,
+                elapsed: &mut self.elapsed[place],
+                over: &mut self.over[place],
+                observation,
+                reward: &mut self.rewards[place],
+                terminated: &mut self.terminated[place],
+                truncated: &mut self.truncated[place],
+                parts: [0.0; PARTS],
+                told,
+            };
+            job.work(actions, autoreset, step_limit);
+            let parts = job.parts;
+            for (all, value) in self.parts.iter_mut().zip(parts) {
+                all[place] = value;
+            }
         }
     }
 }
@@ -294,22 +388,26 @@ impl Job<'_> {
             Ok(()) => {
                 *self.elapsed = 0;
                 *self.over = false;
-                self.reset = true;
+                self.tell(|told| told.events.reset.push(self.index));
             }
-            Err(error) => self.error = Some(error),
+            Err(error) => self.tell(|told| told.errors.push((self.index, error))),
         }
+    }
+
+    fn tell(&self, what: impl FnOnce(&mut Told)) {
+        what(&mut self.told.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
     fn step(&mut self, actions: Actions<'_>, autoreset: Autoreset, step_limit: Option<u64>) {
         let mut values = [0.0; hp_plant::command::ACTUATOR_COUNT];
-        let rows = self.episode.setup().actions.rows();
-        let width = rows.len();
+        let table = &self.episode.setup().actions;
+        let width = table.rows().len();
         let place = self.index * width..(self.index + 1) * width;
         match actions {
             Actions::Values(all) => values[..width].copy_from_slice(&all[place]),
             Actions::Levels(all) => {
-                for ((value, &row), &level) in values.iter_mut().zip(rows).zip(&all[place]) {
-                    *value = action::option_value(row, level as usize);
+                for (column, &level) in all[place].iter().enumerate() {
+                    values[column] = table.value(column, level as usize);
                 }
             }
         }
@@ -336,6 +434,6 @@ impl Job<'_> {
             self.parts = [0.0; PARTS];
             self.begin();
         }
-        self.finished = Some(finished);
+        self.tell(|told| told.events.finished.push(finished));
     }
 }

@@ -2,12 +2,15 @@
 
 use crate::config::library::{self, Kind};
 use crate::error::{PlantError, PlantResult};
+use std::sync::Arc;
 
-/// Speed at every full second.
+/// Speed at every full second. Parts of a cycle share its speeds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriveCycle {
-    name: String,
-    speeds_m_s: Vec<f64>,
+    name: Arc<str>,
+    all_speeds_m_s: Arc<[f64]>,
+    first_s: usize,
+    last_s: usize,
 }
 
 /// Highest speed that a cycle may ask for [km/h].
@@ -58,8 +61,10 @@ impl DriveCycle {
         let end_s = times[times.len() - 1].floor() as usize;
         let table = crate::numerics::interpolation::LinearTable::new(&times, &speeds);
         Ok(Self {
-            name: name.to_owned(),
-            speeds_m_s: (0..=end_s).map(|second| table.at(second as f64) / 3.6).collect(),
+            name: name.into(),
+            all_speeds_m_s: (0..=end_s).map(|second| table.at(second as f64) / 3.6).collect(),
+            first_s: 0,
+            last_s: end_s,
         })
     }
 
@@ -70,7 +75,7 @@ impl DriveCycle {
     #[must_use]
     pub fn window(&self, first_s: usize, last_s: usize) -> Self {
         assert!(first_s < last_s && last_s <= self.duration_s(), "no such part of the cycle");
-        Self { name: self.name.clone(), speeds_m_s: self.speeds_m_s[first_s..=last_s].to_vec() }
+        Self { first_s: self.first_s + first_s, last_s: self.first_s + last_s, ..self.clone() }
     }
 
     /// Name.
@@ -82,18 +87,18 @@ impl DriveCycle {
     /// Speeds at full seconds from 0 on [m/s].
     #[must_use]
     pub fn speeds_m_s(&self) -> &[f64] {
-        &self.speeds_m_s
+        &self.all_speeds_m_s[self.first_s..=self.last_s]
     }
 
     /// Duration [s].
     #[must_use]
     pub fn duration_s(&self) -> usize {
-        self.speeds_m_s.len() - 1
+        self.last_s - self.first_s
     }
 
     /// Distance [m].
     #[must_use]
     pub fn distance_m(&self) -> f64 {
-        self.speeds_m_s.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).sum()
+        self.speeds_m_s().windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).sum()
     }
 }

@@ -52,6 +52,15 @@ enum Reader {
 }
 
 impl Signal {
+    /// The flow that it shows, if it is one.
+    #[must_use]
+    pub fn flow(&self) -> Option<Flow> {
+        match self.reader {
+            Reader::Flow(flow) => Some(flow),
+            Reader::Function(_) | Reader::Connection(_) => None,
+        }
+    }
+
     /// Value at a view.
     #[must_use]
     pub fn read(&self, view: &View<'_>) -> f64 {

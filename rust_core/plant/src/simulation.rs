@@ -1,7 +1,7 @@
 //! Whole runs: a scenario with its vehicle, cycle and controller, from start to arrival.
 
 use crate::command::Command;
-use crate::config::controller::HpcuParameters;
+use crate::config::controller::Controller;
 use crate::config::library::{self, Kind, Override};
 use crate::config::scenario::ScenarioParameters;
 use crate::control::heat_demand_commander;
@@ -27,7 +27,9 @@ pub struct Experiment {
     pub cycle: Arc<DriveCycle>,
     /// Name of the controller's file.
     pub controller: String,
-    /// Rule-based controller.
+    /// What that file says.
+    pub rules: Arc<Controller>,
+    /// Rule-based controller of this scenario.
     pub hpcu: Hpcu,
 }
 
@@ -109,12 +111,13 @@ impl Experiment {
         }
         let scenario: ScenarioParameters = library::load(Kind::Scenario, scenario, &part("scenario"))?;
         let controller = controller.unwrap_or(&scenario.controller).to_owned();
-        let parameters: HpcuParameters = library::load(Kind::Controller, &controller, &part("controller"))?;
+        let rules = Arc::new(Controller::load(&controller, &part("controller"))?);
         Ok(Self {
             plant: Arc::new(Plant::load(&scenario.vehicle, &part("vehicle"))?),
             cycle: Arc::new(DriveCycle::load(&scenario.cycle)?),
             controller,
-            hpcu: Hpcu::new(parameters, scenario.strategy.clone()),
+            hpcu: Hpcu::of(&rules, &scenario),
+            rules,
             scenario,
         })
     }

@@ -1,8 +1,13 @@
 //! Parameters of the rule-based heat pump control unit (HPCU).
 
-use super::Celsius;
 use super::coolant::PidParameters;
+use super::library::{self, Kind, Override};
+use super::scenario::{Strategy, StrategyChanges};
+use super::{Celsius, Validate, Violation, check_range};
+use crate::error::{PlantError, PlantResult};
 use crate::parameters;
+use serde::Deserialize;
+use toml::{Table, Value};
 
 parameters! {
     /// HPCU of paper section 2.4.
@@ -29,6 +34,8 @@ parameters! {
         heating_recirculation: f64 = 0.0 .. 0.95,
         /// Recirculated share while cooling [-] (ours).
         cooling_recirculation: f64 = 0.0 .. 0.95,
+        /// The PTC may help while the cabin is at least this far below its target [K] (paper: always).
+        ptc_from_deviation_k: f64 = -100.0 .. 100.0,
         ;
         /// Thresholds of the battery's connection.
         battery: BatteryThresholds,
@@ -58,5 +65,130 @@ parameters! {
         source_down_to_degc: Celsius = -40.0 .. 40.0,
         /// Above that by this much, the whole heat is requested; below it fades to none [K].
         source_request_band_k: f64 = 0.1 .. 10.0,
+    }
+}
+
+/// A controller file: parameters, and what changes with the ambient temperature (ours).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Controller {
+    /// Parameters outside any band.
+    pub parameters: HpcuParameters,
+    bands: Vec<AmbientBand>,
+}
+
+/// What holds up to an ambient temperature.
+#[derive(Debug, Clone, PartialEq)]
+struct AmbientBand {
+    up_to_degc: Celsius,
+    parameters: HpcuParameters,
+    strategy: StrategyChanges,
+}
+
+/// The same as the file gives it.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AmbientBandTable {
+    up_to_degc: Celsius,
+    #[serde(default)]
+    controller: Table,
+    #[serde(default)]
+    strategy: StrategyChanges,
+}
+
+impl Validate for AmbientBandTable {
+    fn validate(&self) -> Result<(), Violation> {
+        check_range("up_to_degc", self.up_to_degc, -100.0, 100.0)
+    }
+}
+
+impl Controller {
+    /// Loads a controller by name or path.
+    ///
+    /// # Errors
+    /// Anything wrong in its file, in one of its bands or in an override.
+    pub fn load(name: &str, overrides: &[Override]) -> PlantResult<Self> {
+        let mut table = library::table(Kind::Controller, name, overrides)?;
+        let bands = table.remove("ambient_bands").unwrap_or_else(|| Value::Array(Vec::new()));
+        let Value::Array(rows) = bands else {
+            return Err(not_a_list(name, "ambient_bands"));
+        };
+        let mut bands: Vec<AmbientBand> = Vec::with_capacity(rows.len());
+        for (index, row) in rows.into_iter().enumerate() {
+            let place = format!("{name}, ambient_bands[{index}]");
+            let Value::Table(row) = row else { return Err(not_a_list(name, "ambient_bands")) };
+            let band: AmbientBandTable = library::read(&place, row)?;
+            if let Some(last) = bands.last().filter(|last| band.up_to_degc <= last.up_to_degc) {
+                let allowed = format!("must be above that of the band before ({})", last.up_to_degc.0);
+                return Err(Violation::new("up_to_degc", band.up_to_degc.0, allowed).in_file(&place));
+            }
+            let mut whole = table.clone();
+            library::merge(&mut whole, band.controller);
+            bands.push(AmbientBand {
+                up_to_degc: band.up_to_degc,
+                parameters: library::read(&place, whole)?,
+                strategy: band.strategy,
+            });
+        }
+        Ok(Self { parameters: library::read(name, table)?, bands })
+    }
+
+    /// Parameters and strategy at an ambient temperature, for a scenario that allows `strategy`.
+    ///
+    /// The first band that reaches up to the temperature holds; above all bands, what stands outside of them.
+    #[must_use]
+    pub fn at(&self, ambient: Celsius, strategy: &Strategy) -> (HpcuParameters, Strategy) {
+        match self.bands.iter().find(|band| ambient <= band.up_to_degc) {
+            Some(band) => (band.parameters.clone(), band.strategy.applied_to(strategy)),
+            None => (self.parameters.clone(), strategy.clone()),
+        }
+    }
+}
+
+fn not_a_list(name: &str, key: &str) -> PlantError {
+    PlantError::Syntax { file: name.to_owned(), message: format!("`{key}` must be a list of tables") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::scenario::BatteryTreatment;
+    use crate::simulation::Experiment;
+
+    fn loaded(bands: &str) -> PlantResult<Controller> {
+        let file = tempfile::Builder::new().suffix(".toml").tempfile().expect("a temporary file");
+        let text = format!("base = \"hpcu\"\n{bands}");
+        std::fs::write(file.path(), text).expect("written");
+        Controller::load(file.path().to_str().expect("plain name"), &[])
+    }
+
+    #[test]
+    fn first_band_that_reaches_the_ambient_temperature_holds() {
+        let controller = loaded(
+            "[[ambient_bands]]\nup_to_degc = -10.0\nstrategy.battery = \"isolate\"\n\
+             [[ambient_bands]]\nup_to_degc = 5.0\ncontroller.battery.heat_up_to_degc = 10.0\n",
+        )
+        .expect("valid");
+        let strategy = Experiment::load("jeffs2019/case1-1", None, &[]).expect("built in").scenario.strategy;
+        let at = |degc: f64| controller.at(Celsius(degc), &strategy);
+        assert_eq!(at(-10.0).1.battery, BatteryTreatment::Isolate);
+        assert_eq!(at(-10.0).0.battery.heat_up_to_degc, Celsius(20.0));
+        assert_eq!(at(-9.9), at(5.0));
+        assert_eq!(at(5.0).0.battery.heat_up_to_degc, Celsius(10.0));
+        assert_eq!(at(5.0).0.battery.cool_above_degc, Celsius(30.0));
+        assert_eq!(at(5.1), (controller.parameters.clone(), strategy.clone()));
+    }
+
+    #[test]
+    fn errors_of_a_band_name_band_and_key() {
+        for (bands, expected) in [
+            ("[[ambient_bands]]\nup_to_degc = 500.0\n", "ambient_bands[0]"),
+            ("[[ambient_bands]]\nup_to_degc = 0.0\n[[ambient_bands]]\nup_to_degc = -5.0\n", "above that of"),
+            ("[[ambient_bands]]\nup_to_degc = 0.0\ncontroller.htc_set_point_degc = 500.0\n", "htc_set_point"),
+            ("[[ambient_bands]]\nup_to_degc = 0.0\nstrategy.sun = true\n", "sun"),
+            ("ambient_bands = 3\n", "list of tables"),
+        ] {
+            let message = loaded(bands).expect_err("refused").to_string();
+            assert!(message.contains(expected), "{bands}: {message}");
+        }
     }
 }

@@ -35,6 +35,10 @@ pub enum Kind {
     Episodes,
     /// `rewards/*.toml`
     Reward,
+    /// `benchmark/*.toml`
+    Benchmark,
+    /// `agents/*.toml`
+    Training,
 }
 
 impl Kind {
@@ -49,6 +53,8 @@ impl Kind {
             Self::Calibration => ("calibration", "toml"),
             Self::Episodes => ("episodes", "toml"),
             Self::Reward => ("rewards", "toml"),
+            Self::Benchmark => ("benchmark", "toml"),
+            Self::Training => ("agents", "toml"),
         }
     }
 
@@ -64,6 +70,8 @@ impl Kind {
             Self::Calibration => "calibration",
             Self::Episodes => "distribution of episodes",
             Self::Reward => "reward",
+            Self::Benchmark => "benchmark",
+            Self::Training => "training configuration",
         }
     }
 }
@@ -140,11 +148,27 @@ pub fn load<T: DeserializeOwned + Validate>(
     name: &str,
     overrides: &[Override],
 ) -> PlantResult<T> {
+    read(name, table(kind, name, overrides)?)
+}
+
+/// A file with its bases and overrides, not checked.
+///
+/// # Errors
+/// There is no such file, it is not TOML, or an override names a section that it does not have.
+pub fn table(kind: Kind, name: &str, overrides: &[Override]) -> PlantResult<Table> {
     let mut table = merged(kind, name, 0)?;
     for change in overrides {
         set(&mut table, &change.key, change.value.clone())
             .map_err(|message| PlantError::Syntax { file: name.to_owned(), message })?;
     }
+    Ok(table)
+}
+
+/// Reads and checks parameters; `name` is the file that an error names.
+///
+/// # Errors
+/// A key is missing or unknown, or a value is not allowed.
+pub fn read<T: DeserializeOwned + Validate>(name: &str, table: Table) -> PlantResult<T> {
     let parameters: T = serde_path_to_error::deserialize(Value::Table(table)).map_err(|error| {
         let path = error.path().to_string();
         let inner = error.into_inner().to_string();
@@ -173,7 +197,8 @@ fn merged(kind: Kind, name: &str, depth: usize) -> PlantResult<Table> {
     }
 }
 
-fn merge(whole: &mut Table, part: Table) {
+/// Puts the values of one table in place of those of another, section by section.
+pub fn merge(whole: &mut Table, part: Table) {
     for (key, value) in part {
         match (whole.get_mut(&key), value) {
             (Some(Value::Table(inner)), Value::Table(changes)) => merge(inner, changes),

@@ -7,9 +7,9 @@ use super::pid::{ResetGains, ResetPid};
 use crate::circuits::assembly::NODES;
 use crate::circuits::branches::Branch;
 use crate::command::{Connection, Demand, Member};
-use crate::config::controller::HpcuParameters;
+use crate::config::controller::{Controller, HpcuParameters};
 use crate::config::coolant::PidParameters;
-use crate::config::scenario::{BatteryTreatment, ClimateControl, Strategy};
+use crate::config::scenario::{BatteryTreatment, ClimateControl, ScenarioParameters, Strategy};
 use crate::numerics::thermal_network::Node;
 use crate::plant::{CONTROL_PERIOD_S, Plant};
 use crate::state::State;
@@ -80,6 +80,14 @@ struct PowerGains {
 }
 
 impl Hpcu {
+    /// The controller of a scenario.
+    #[must_use]
+    pub fn of(controller: &Controller, scenario: &ScenarioParameters) -> Self {
+        let ambient = scenario.climate.ambient_temperature_degc;
+        let (parameters, strategy) = controller.at(ambient, &scenario.strategy);
+        Self::new(parameters, strategy)
+    }
+
     /// An HPCU with parameters and what it may use.
     #[must_use]
     pub fn new(parameters: HpcuParameters, strategy: Strategy) -> Self {
@@ -122,7 +130,9 @@ impl Hpcu {
         let mode = self.cabin_mode(state, memory);
         let mut demand = Demand {
             connections: self.connections(plant, state, memory, mode),
-            ptc_allowed: self.strategy.ptc && mode == CabinMode::Heating,
+            ptc_allowed: self.strategy.ptc
+                && mode == CabinMode::Heating
+                && self.cabin_error_k(state, mode) >= self.parameters.ptc_from_deviation_k,
             recirculation: match mode {
                 CabinMode::Heating => self.parameters.heating_recirculation,
                 CabinMode::Cooling => self.parameters.cooling_recirculation,

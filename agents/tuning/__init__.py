@@ -1,0 +1,1 @@
+"""Rules at their best: modes and set points of the HPCU chosen on training trips."""

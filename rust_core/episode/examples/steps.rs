@@ -1,0 +1,64 @@
+//! Steps environments with random actions, for a profiler that counts instructions:
+//!
+//! `cargo build --release -p hp_episode --example steps`, then
+//! `valgrind --tool=callgrind target/release/examples/steps 64 200 1` (environments, steps, threads).
+
+use hp_episode::action;
+use hp_episode::episode::Episode;
+use hp_episode::random::Random;
+use hp_episode::setup::{Settings, Setup};
+use hp_episode::vector::{Actions, Autoreset, PARTS, Results, Vector};
+use hp_plant::command::ACTUATORS;
+use std::sync::Arc;
+use std::time::Instant;
+
+fn main() {
+    let number = |place: usize, default: usize| {
+        std::env::args().nth(place).map_or(default, |text| text.parse().expect("a whole number"))
+    };
+    let (count, steps, threads) = (number(1, 64), number(2, 200), number(3, 1));
+    let names = ACTUATORS[..action::DEFAULT_ROWS].iter().map(|actuator| actuator.name.to_owned());
+    let settings = Settings {
+        continuous: false,
+        actions: names.collect(),
+        observations: vec!["default".to_owned()],
+        reward: "balanced".to_owned(),
+        reward_overrides: Vec::new(),
+        overrides: Vec::new(),
+        control_interval_s: 1,
+        sensor_noise: 0.0,
+    };
+    let setup = Arc::new(Setup::new(&settings).expect("built in"));
+    let source = setup.distribution("train-v0").expect("built in");
+    let episodes = (0..count).map(|_| Episode::new(Arc::clone(&setup), source.clone())).collect();
+    let mut vector = Vector::new(episodes, Autoreset::NextStep, None, threads);
+    for index in 0..count {
+        vector.reset(index, Some(index as u64), None).expect("built in");
+    }
+    let mut random = Random::seeded(1);
+    let counts = setup.actions.option_counts();
+    let mut levels = vec![0; count * counts.len()];
+    let mut observations = vec![0.0; count * setup.observations.rows().len()];
+    let mut rewards = vec![0.0; count];
+    let mut parts = vec![0.0; count * PARTS];
+    let (mut terminated, mut truncated) = (vec![false; count], vec![false; count]);
+    let (mut sum, mut fastest_s) = (0.0, f64::INFINITY);
+    for _ in 0..steps {
+        for (place, level) in levels.iter_mut().enumerate() {
+            *level = random.index(counts[place % counts.len()]) as i64;
+        }
+        let mut results = Results {
+            observations: &mut observations,
+            rewards: &mut rewards,
+            terminated: &mut terminated,
+            truncated: &mut truncated,
+            parts: &mut parts,
+        };
+        let start = Instant::now();
+        vector.step(Actions::Levels(&levels), &mut results).expect("built in");
+        fastest_s = fastest_s.min(start.elapsed().as_secs_f64());
+        sum += rewards.iter().sum::<f64>();
+    }
+    println!("sum of rewards {sum:?}; fastest step {:.0} ns an environment", fastest_s / count as f64 * 1e9);
+    println!("size of an episode {} bytes", size_of::<Episode>());
+}

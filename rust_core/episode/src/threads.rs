@@ -1,0 +1,96 @@
+//! Work shared between the calling thread and helpers.
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::sync::{Mutex, PoisonError};
+
+/// Entries that a thread takes at a time: some microseconds of work, so that no thread waits long for another.
+const BATCH: usize = 16;
+
+/// Consecutive entries that can be divided.
+pub trait Stretch: Send + Sized {
+    /// Number of entries.
+    fn len(&self) -> usize;
+
+    /// Cuts off the first entries; no more than there are.
+    fn take(&mut self, count: usize) -> Self;
+}
+
+/// As many threads as allowed, the calling one included.
+#[derive(Debug)]
+pub struct Threads {
+    count: usize,
+    helpers: Option<Helpers>,
+}
+
+/// Threads of this process; a fork does not inherit them.
+#[derive(Debug)]
+struct Helpers {
+    process: u32,
+    pool: ThreadPool,
+}
+
+impl Threads {
+    /// At most `count` threads, started when there is work for them.
+    #[must_use]
+    pub fn new(count: usize) -> Self {
+        Self { count: count.max(1), helpers: None }
+    }
+
+    /// Number of threads.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Works through all entries, batch by batch, in no fixed order.
+    ///
+    /// Each thread begins with a share of its own, the same every time, so that what it works on stays in its
+    /// core's cache. Then it takes what others have left: one that the machine holds up holds up nobody else.
+    pub fn work<S: Stretch>(&mut self, mut all: S, work: impl Fn(S) + Sync) {
+        let count = self.count.min(all.len().div_ceil(BATCH));
+        let Some(pool) = self.pool(count) else {
+            work(all);
+            return;
+        };
+        let length = all.len();
+        let bound = |thread: usize| length * thread / count;
+        let shares: Vec<Mutex<S>> =
+            (0..count).map(|thread| Mutex::new(all.take(bound(thread + 1) - bound(thread)))).collect();
+        let next = |share: &Mutex<S>| {
+            let mut share = share.lock().unwrap_or_else(PoisonError::into_inner);
+            (share.len() > 0).then(|| share.take(BATCH))
+        };
+        let toil = |thread: usize| {
+            for place in 0..count {
+                let share = &shares[(thread + place) % count];
+                while let Some(batch) = next(share) {
+                    work(batch);
+                }
+            }
+        };
+        let toil = &toil;
+        pool.in_place_scope(|scope| {
+            for thread in 1..count {
+                scope.spawn(move |_| toil(thread));
+            }
+            toil(0);
+        });
+    }
+
+    /// Helpers for `count` threads; none where the calling one is enough or no more are to be had.
+    fn pool(&mut self, count: usize) -> Option<&ThreadPool> {
+        if count < 2 {
+            return None;
+        }
+        let process = std::process::id();
+        if let Some(old) = self.helpers.take_if(|helpers| helpers.process != process) {
+            // Its threads stayed in the parent process; waiting for them would never end.
+            std::mem::forget(old);
+        }
+        if self.helpers.is_none() {
+            let pool = ThreadPoolBuilder::new().num_threads(self.count - 1).build().ok();
+            self.helpers = pool.map(|pool| Helpers { process, pool });
+        }
+        self.helpers.as_ref().map(|helpers| &helpers.pool)
+    }
+}
