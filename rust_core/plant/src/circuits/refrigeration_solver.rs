@@ -116,6 +116,10 @@ enum Closure {
     AtSpeed(f64),
 }
 
+#[allow(
+    clippy::large_enum_variant,
+    reason = "a solution stays on the stack; a box would allocate every second"
+)]
 enum Newton {
     Solved(CyclePoint<f64>),
     /// The active limit lies beyond the highest or below the lowest speed.

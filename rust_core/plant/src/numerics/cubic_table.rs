@@ -75,7 +75,7 @@ impl<const COLUMNS: usize> CubicTable<COLUMNS> {
         let u = position - index as f64;
         // Held end values have no slope.
         let scale = if inside == x.value() { self.per_step } else { 0.0 };
-        let powers = self.intervals[index].each_ref().map(|row| columns::<COLUMNS, START, LENGTH>(row));
+        let powers = self.intervals[index].each_ref().map(columns::<COLUMNS, START, LENGTH>);
         // Values and slopes apart, so that several columns are worked out at once.
         let mut values = [0.0; LENGTH];
         let mut slopes = [0.0; LENGTH];
