@@ -10,6 +10,7 @@ from agents.commands.export import export
 from agents.commands.reproduce import reproduce
 from agents.commands.run import run
 from agents.commands.scenarios import scenarios
+from agents.commands.speed import speed
 from agents.commands.train import train
 from agents.commands.tune import tune
 
@@ -28,6 +29,7 @@ for command in (
     tune,
     train,
     export,
+    speed,
 ):
     app.command()(command)
 

@@ -162,8 +162,11 @@ class Vector:
         seeds: Sequence[int | None],
         scenarios: Sequence[str | None],
         distributions: Sequence[str | None],
-    ) -> list[tuple[int, _Info]]:
-        """Resets environments, each with its seed and, just this once, its scenario or distribution."""
+    ) -> _Info:
+        """Resets environments, each with its seed and, just this once, its scenario or distribution.
+
+        Tells of their trips: a list or array by name, one entry for each of them.
+        """
     def observe(self, indices: Sequence[int]) -> _Floats:
         """Observations of environments, one row each."""
     def step(
@@ -175,7 +178,8 @@ class Vector:
         _Bools,
         NDArray[np.float64],
         list[tuple[int, _Info, _Floats | None]],
-        list[tuple[int, _Info]],
+        list[int],
+        _Info,
     ]:
         """Drives all environments on for one control interval."""
     def action_masks(self) -> _Bools:
@@ -207,6 +211,9 @@ def reward_parts() -> list[str]:
 
 def totals(scenarios: Sequence[str], overrides: Sequence[str] = ...) -> list[tuple[dict[str, float], str]]:
     """Totals of several scenarios with the same overrides, run side by side."""
+
+def plant_step_seconds(scenario: str, seed: int | None = None) -> tuple[float, int]:
+    """Seconds of all steps with the compressor on, and their number; random actions with a seed."""
 
 def signals() -> list[tuple[str, str, str]]:
     """Name, unit and description of every signal, in the order of a row."""

@@ -128,10 +128,9 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             [trips[1][i] for i in indices],
         )
         infos: dict[str, Any] = {}
-        for index, info in told:
-            infos = self._add_info(infos, info, index)
+        self._tell(infos, indices, told)
         observations = self._observations(indices)
-        self._last = observations
+        self._keep(observations)
         return observations, infos
 
     def step(
@@ -147,12 +146,11 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             TypeError: The actions are of the wrong type.
             ResetNeeded: A trip has not begun, or has ended and there is no automatic reset.
         """
-        observations, rewards, terminated, truncated, parts, finished, reset = self._core.step(actions)
+        observations, rewards, terminated, truncated, parts, finished, reset, told = self._core.step(actions)
         infos: dict[str, Any] = {}
         stepped = np.ones(self.num_envs, dtype=np.bool_)
-        for index, _ in reset:
-            stepped[index] = False
-        if stepped.any():
+        stepped[reset] = False
+        if len(reset) < self.num_envs:
             for name, values in zip(_PARTS, parts, strict=True):
                 infos[name] = values
                 infos[f"_{name}"] = stepped.copy()
@@ -162,9 +160,9 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             else:
                 ending = {key: value for key, value in info.items() if key not in _PARTS}
                 infos = self._add_info(infos, ending, index)
-        for index, info in reset:
-            infos = self._add_info(infos, info, index)
-        self._last = observations
+        if reset:
+            self._tell(infos, reset, told)
+        self._keep(observations)
         return observations, rewards, terminated, truncated, infos
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
@@ -244,6 +242,20 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         observations = self._last.copy()
         observations[indices] = self._core.observe(indices)
         return observations
+
+    def _keep(self, observations: NDArray[np.float32]) -> None:
+        if self._noisy:
+            self._last = observations
+
+    def _tell(self, infos: dict[str, Any], indices: list[int], told: dict[str, Any]) -> None:
+        """Adds what is told of trips to the infos, in the form that Gymnasium gives them."""
+        for name, values in told.items():
+            if isinstance(values, np.ndarray):
+                infos[name] = np.zeros(self.num_envs, values.dtype)
+            else:
+                infos[name] = np.full(self.num_envs, None, dtype=object)
+            infos[f"_{name}"] = np.zeros(self.num_envs, np.bool_)
+            infos[name][indices], infos[f"_{name}"][indices] = values, True
 
     def _mask(self, options: dict[str, Any] | None) -> NDArray[np.bool_]:
         mask = (options or {}).get("reset_mask")

@@ -58,9 +58,9 @@ pub fn trip_info<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<B
     let info = PyDict::new(py);
     if let Some((origin, experiment)) = episode.trip() {
         info.set_item(intern!(py, "scenario"), origin)?;
-        info.set_item(intern!(py, "cycle"), &experiment.scenario.cycle)?;
+        info.set_item(intern!(py, "cycle"), experiment.cycle.name())?;
         info.set_item(intern!(py, "trip_s"), experiment.cycle.duration_s())?;
-        let ambient_degc = experiment.scenario.climate.ambient_temperature_degc.0;
+        let ambient_degc = experiment.climate.ambient_temperature_degc.0;
         info.set_item(intern!(py, "ambient_temperature_degc"), ambient_degc)?;
     }
     Ok(info)

@@ -1,6 +1,7 @@
 //! Scenarios and runs.
 
 use crate::errors::to_python;
+use hp_episode::timing;
 use hp_plant::command::{ACTUATOR_COUNT, Command, Demand};
 use hp_plant::config::library::Override;
 use hp_plant::signals;
@@ -79,7 +80,7 @@ impl Experiment {
 
     #[getter]
     fn ambient_temperature_degc(&self) -> f64 {
-        self.inner.scenario.climate.ambient_temperature_degc.0
+        self.inner.climate.ambient_temperature_degc.0
     }
 
     #[getter]
@@ -224,6 +225,16 @@ pub fn totals<'py>(
             Ok((to_dict(py, &summary)?, end.name()))
         })
         .collect()
+}
+
+/// Seconds that all steps with the compressor on took on a trip, and their number; random actions with a seed.
+#[pyfunction]
+#[pyo3(signature = (scenario, seed=None))]
+pub fn plant_step_seconds(py: Python<'_>, scenario: &str, seed: Option<u64>) -> PyResult<(f64, usize)> {
+    let experiment = simulation::Experiment::load(scenario, None, &[]).map_err(to_python)?;
+    let timed = py.detach(|| timing::compressor_on_steps(&experiment, seed));
+    let (spent, steps) = timed.map_err(to_python)?;
+    Ok((spent.as_secs_f64(), steps))
 }
 
 /// Name, unit and description of every trajectory column.

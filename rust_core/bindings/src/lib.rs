@@ -17,7 +17,7 @@ mod _core {
     use super::errors::ConfigurationError;
     use super::errors::to_python;
     #[pymodule_export]
-    use super::experiment::{Experiment, Run, signal_table, totals};
+    use super::experiment::{Experiment, Run, plant_step_seconds, signal_table, totals};
     #[pymodule_export]
     use super::vector::Vector;
     use hp_plant::command::{ACTUATORS, Scale};

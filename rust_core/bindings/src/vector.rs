@@ -1,13 +1,14 @@
 //! Many environments that step together, the interpreter's lock released.
 
 use crate::actions::{self, Checked};
-use crate::episode::{kpis, looked, parts_info, setup, source, speeds_m_s, summary, trip_info};
+use crate::episode::{kpis, looked, parts_info, setup, source, speeds_m_s, summary};
 use crate::errors::{gymnasium_error, to_python};
 use hp_episode::episode::Episode;
 use hp_episode::setup::{Setup, Source};
-use hp_episode::vector::{self, Actions, ActionsMut, Autoreset, Events, PARTS, Results};
+use hp_episode::vector::{self, Actions, ActionsMut, Autoreset, PARTS, Results};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::collections::HashMap;
@@ -19,11 +20,8 @@ type Names = Vec<Option<String>>;
 /// A trip that is over: environment, whether it was cut off, info, last observation.
 type Finished<'py> = (usize, Bound<'py, PyDict>, Option<Bound<'py, PyArray1<f32>>>);
 
-/// An environment that was reset, with what is told of its trip.
-type Reset<'py> = (usize, Bound<'py, PyDict>);
-
 /// What a step gives: observations, rewards, terminated, truncated, parts of the rewards, trips that are over,
-/// environments that were reset.
+/// environments that were reset, what is told of their trips.
 type Step<'py> = (
     Bound<'py, PyArray2<f32>>,
     Bound<'py, PyArray1<f64>>,
@@ -31,7 +29,8 @@ type Step<'py> = (
     Bound<'py, PyArray1<bool>>,
     Bound<'py, PyArray2<f64>>,
     Vec<Finished<'py>>,
-    Vec<Reset<'py>>,
+    Vec<usize>,
+    Bound<'py, PyDict>,
 );
 
 /// Many environments.
@@ -138,20 +137,18 @@ impl Vector {
         seeds: Vec<Option<u64>>,
         scenarios: Names,
         distributions: Names,
-    ) -> PyResult<Vec<Reset<'py>>> {
+    ) -> PyResult<Bound<'py, PyDict>> {
         self.require_open(py)?;
         let mut sources = Sources { setup: &self.setup, loaded: HashMap::new() };
         let mut once = Vec::with_capacity(indices.len());
         for (scenario, distribution) in scenarios.iter().zip(&distributions) {
             once.push(sources.get(scenario.as_ref(), distribution.as_ref())?);
         }
-        let mut infos = Vec::with_capacity(indices.len());
         for ((&index, seed), once) in indices.iter().zip(seeds).zip(&once) {
             self.check_index(index)?;
             self.inner.reset(index, seed, once.as_ref()).map_err(to_python)?;
-            infos.push((index, trip_info(py, &self.inner.episodes()[index])?));
         }
-        Ok(infos)
+        self.trips_info(py, &indices)
     }
 
     /// Observations of environments, one row each.
@@ -204,8 +201,9 @@ impl Vector {
             let inner = &mut self.inner;
             py.detach(|| inner.step(actions, &mut results)).map_err(to_python)?
         };
-        let (finished, reset) = self.told(py, events)?;
-        Ok((observations, rewards, terminated, truncated, parts, finished, reset))
+        let told = self.trips_info(py, &events.reset)?;
+        let finished = self.finished(py, events.finished)?;
+        Ok((observations, rewards, terminated, truncated, parts, finished, events.reset, told))
     }
 
     fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
@@ -334,9 +332,9 @@ impl Vector {
 }
 
 impl Vector {
-    fn told<'py>(&self, py: Python<'py>, events: Events) -> PyResult<(Vec<Finished<'py>>, Vec<Reset<'py>>)> {
-        let mut finished = Vec::with_capacity(events.finished.len());
-        for trip in events.finished {
+    fn finished<'py>(&self, py: Python<'py>, trips: Vec<vector::Finished>) -> PyResult<Vec<Finished<'py>>> {
+        let mut finished = Vec::with_capacity(trips.len());
+        for trip in trips {
             let info = parts_info(py, &trip.parts)?;
             if let Some(end) = trip.end {
                 info.set_item("end_reason", end.name())?;
@@ -345,10 +343,19 @@ impl Vector {
             let last = trip.last_observation.map(|values| values.into_pyarray(py));
             finished.push((trip.index, info, last));
         }
-        let mut reset = Vec::with_capacity(events.reset.len());
-        for index in events.reset {
-            reset.push((index, trip_info(py, &self.inner.episodes()[index])?));
-        }
-        Ok((finished, reset))
+        Ok(finished)
+    }
+
+    /// What is told of trips when they begin: a list or array by name.
+    fn trips_info<'py>(&self, py: Python<'py>, indices: &[usize]) -> PyResult<Bound<'py, PyDict>> {
+        let trips = || indices.iter().filter_map(|&index| self.inner.episodes()[index].trip());
+        let durations_s: Vec<i64> = trips().map(|(_, trip)| trip.cycle.duration_s() as i64).collect();
+        let ambient: Vec<f64> = trips().map(|(_, trip)| trip.climate.ambient_temperature_degc.0).collect();
+        let told = PyDict::new(py);
+        told.set_item(intern!(py, "scenario"), trips().map(|(origin, _)| origin).collect::<Vec<_>>())?;
+        told.set_item(intern!(py, "cycle"), trips().map(|(_, trip)| trip.cycle.name()).collect::<Vec<_>>())?;
+        told.set_item(intern!(py, "trip_s"), durations_s.into_pyarray(py))?;
+        told.set_item(intern!(py, "ambient_temperature_degc"), ambient.into_pyarray(py))?;
+        Ok(told)
     }
 }

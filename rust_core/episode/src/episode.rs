@@ -43,7 +43,7 @@ struct Progress {
 /// A trip in progress.
 #[derive(Debug, Clone)]
 struct Current {
-    origin: String,
+    origin: Arc<str>,
     window: Option<(usize, usize)>,
     experiment: Experiment,
     conditions: ReferenceConditions,
@@ -71,7 +71,7 @@ pub struct Episode {
 
 impl Current {
     fn of(setup: &Setup, trip: Trip) -> PlantResult<Self> {
-        let (origin, window) = (trip.origin.clone(), trip.window);
+        let (origin, window) = (Arc::clone(&trip.origin), trip.window);
         let experiment = setup.garage.build(trip)?;
         let run = experiment.start();
         let defaults = Defaults::of(&experiment);
@@ -89,8 +89,14 @@ impl Current {
 
     /// What defines the trip.
     fn trip(&self) -> Trip {
-        let scenario = self.experiment.scenario.clone();
-        Trip { origin: self.origin.clone(), scenario, window: self.window }
+        let Experiment { climate, initial, cycle, .. } = &self.experiment;
+        Trip {
+            origin: Arc::clone(&self.origin),
+            cycle: cycle.name().into(),
+            climate: climate.clone(),
+            initial: initial.clone(),
+            window: self.window,
+        }
     }
 }
 
@@ -215,7 +221,7 @@ impl Episode {
     /// Origin of the trip in progress, and what it is made of.
     #[must_use]
     pub fn trip(&self) -> Option<(&str, &Experiment)> {
-        self.current.as_ref().map(|current| (current.origin.as_str(), &current.experiment))
+        self.current.as_ref().map(|current| (&*current.origin, &current.experiment))
     }
 
     /// The run in progress.

@@ -1,7 +1,7 @@
 //! Vehicles, cycles and scenarios, each loaded once and shared by all episodes.
 
 use hp_plant::config::library::Override;
-use hp_plant::config::scenario::ScenarioParameters;
+use hp_plant::config::scenario::{ClimateParameters, InitialParameters};
 use hp_plant::control::hpcu::Hpcu;
 use hp_plant::drive_cycle::DriveCycle;
 use hp_plant::error::PlantResult;
@@ -14,10 +14,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// What defines a trip: plain data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Trip {
-    /// Scenario that gave vehicle and controller.
-    pub origin: String,
-    /// The scenario itself.
-    pub scenario: ScenarioParameters,
+    /// Scenario that gives all that is not below.
+    pub origin: Arc<str>,
+    /// Drive cycle.
+    pub cycle: Arc<str>,
+    /// Climate.
+    pub climate: ClimateParameters,
+    /// Initial state.
+    pub initial: InitialParameters,
     /// Part of the cycle that is driven [s]; the whole where absent.
     pub window: Option<(usize, usize)>,
 }
@@ -33,7 +37,7 @@ pub struct Garage {
 struct Shelves {
     experiments: HashMap<String, Arc<Experiment>>,
     plants: HashMap<String, Arc<Plant>>,
-    cycles: HashMap<String, Arc<DriveCycle>>,
+    cycles: HashMap<String, DriveCycle>,
 }
 
 impl Garage {
@@ -61,7 +65,7 @@ impl Garage {
         let vehicle = experiment.scenario.vehicle.clone();
         experiment.plant = Arc::clone(shelves.plants.entry(vehicle).or_insert(experiment.plant));
         let cycle = experiment.scenario.cycle.clone();
-        experiment.cycle = Arc::clone(shelves.cycles.entry(cycle).or_insert(experiment.cycle));
+        experiment.cycle = shelves.cycles.entry(cycle).or_insert(experiment.cycle).clone();
         let experiment = Arc::new(experiment);
         shelves.experiments.insert(name.to_owned(), Arc::clone(&experiment));
         Ok(experiment)
@@ -71,13 +75,13 @@ impl Garage {
     ///
     /// # Errors
     /// There is none of that name, or its file is no cycle.
-    pub fn cycle(&self, name: &str) -> PlantResult<Arc<DriveCycle>> {
+    pub fn cycle(&self, name: &str) -> PlantResult<DriveCycle> {
         let mut shelves = self.shelves();
         if let Some(cycle) = shelves.cycles.get(name) {
-            return Ok(Arc::clone(cycle));
+            return Ok(cycle.clone());
         }
-        let cycle = Arc::new(DriveCycle::load(name)?);
-        shelves.cycles.insert(name.to_owned(), Arc::clone(&cycle));
+        let cycle = DriveCycle::load(name)?;
+        shelves.cycles.insert(name.to_owned(), cycle.clone());
         Ok(cycle)
     }
 
@@ -86,8 +90,14 @@ impl Garage {
     /// # Errors
     /// See [`Self::experiment`].
     pub fn trip(&self, name: &str) -> PlantResult<Trip> {
-        let scenario = self.experiment(name)?.scenario.clone();
-        Ok(Trip { origin: name.to_owned(), scenario, window: None })
+        let experiment = self.experiment(name)?;
+        Ok(Trip {
+            origin: name.into(),
+            cycle: experiment.scenario.cycle.as_str().into(),
+            climate: experiment.climate.clone(),
+            initial: experiment.initial.clone(),
+            window: None,
+        })
     }
 
     /// Makes a trip ready to drive.
@@ -96,13 +106,18 @@ impl Garage {
     /// Its origin or cycle cannot be loaded.
     pub fn build(&self, trip: Trip) -> PlantResult<Experiment> {
         let origin = self.experiment(&trip.origin)?;
-        let mut cycle = self.cycle(&trip.scenario.cycle)?;
+        let mut cycle = self.cycle(&trip.cycle)?;
         if let Some((first_s, last_s)) = trip.window {
-            cycle = Arc::new(cycle.window(first_s, last_s));
+            cycle = cycle.window(first_s, last_s);
         }
+        let ambient = trip.climate.ambient_temperature_degc;
+        let hpcu = Hpcu::of(&origin.rules, &origin.scenario.strategy, ambient);
         Ok(Experiment {
-            hpcu: Hpcu::of(&origin.rules, &trip.scenario),
-            scenario: trip.scenario,
+            // Nearly all trips have the controller of their origin.
+            hpcu: if hpcu == *origin.hpcu { Arc::clone(&origin.hpcu) } else { Arc::new(hpcu) },
+            scenario: Arc::clone(&origin.scenario),
+            climate: trip.climate,
+            initial: trip.initial,
             plant: Arc::clone(&origin.plant),
             cycle,
             controller: origin.controller.clone(),

@@ -14,4 +14,5 @@ pub mod scenario_sampler;
 pub mod setup;
 pub mod snapshot;
 pub mod threads;
+pub mod timing;
 pub mod vector;

@@ -38,7 +38,7 @@ impl ReferenceConditions {
             circuit.pump.power_w(circuit.pump.minimum_flow_kg_s)
         };
         Self {
-            air: air::at_temperature(experiment.scenario.climate.ambient_temperature_degc.kelvin()),
+            air: air::at_temperature(experiment.climate.ambient_temperature_degc.kelvin()),
             spin_loss_w_s_m: vehicle.transmission.spin_loss_w(REFERENCE_TEMPERATURE.kelvin(), 1.0),
             base_load_w: vehicle.controls.auxiliary_power_w
                 + pump(&vehicle.htc.circuit)

@@ -124,7 +124,6 @@ pub struct Meter {
     /// Terms so far.
     pub total: Terms,
     reference: ReferenceTrip,
-    start_k: NodeValues,
     trips: u32,
 }
 
@@ -135,7 +134,6 @@ impl Meter {
         Self {
             total: Terms::default(),
             reference: ReferenceTrip::start(state.battery),
-            start_k: state.temperatures_k,
             trips: state.refrigeration.compressor.protection_trips,
         }
     }
@@ -172,9 +170,10 @@ impl Meter {
             occupied_h: if occupied { hours } else { 0.0 },
             heat_left_kwh: match end {
                 Some(EndReason::Arrived) => {
-                    let heating =
-                        experiment.scenario.climate.ambient_temperature_degc.0 < COMFORT_TEMPERATURE_DEGC;
-                    useful_heat_j(plant, &self.start_k, &after.temperatures_k, heating) / JOULE_PER_KWH
+                    let heating = experiment.climate.ambient_temperature_degc.0 < COMFORT_TEMPERATURE_DEGC;
+                    let start = plant.parked(&experiment.initial);
+                    useful_heat_j(plant, &start.temperatures_k, &after.temperatures_k, heating)
+                        / JOULE_PER_KWH
                 }
                 _ => 0.0,
             },

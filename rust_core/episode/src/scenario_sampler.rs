@@ -79,6 +79,8 @@ impl Validate for DistributionParameters {
 pub struct Distribution {
     name: String,
     parameters: DistributionParameters,
+    origin: Arc<str>,
+    cycles: Vec<Arc<str>>,
     template: Arc<Experiment>,
     standstills: Vec<Vec<usize>>,
 }
@@ -99,7 +101,9 @@ impl Distribution {
             let speeds_m_s = garage.cycle(cycle)?.speeds_m_s().to_vec();
             standstills.push((0..speeds_m_s.len()).filter(|&second| speeds_m_s[second] == 0.0).collect());
         }
-        Ok(Self { name: name.to_owned(), parameters, template, standstills })
+        let origin = parameters.scenario.as_str().into();
+        let cycles = parameters.cycles.iter().map(|cycle| cycle.as_str().into()).collect();
+        Ok(Self { name: name.to_owned(), parameters, origin, cycles, template, standstills })
     }
 
     /// Name.
@@ -111,9 +115,9 @@ impl Distribution {
     /// Draws a trip.
     pub fn draw(&self, random: &mut Random) -> Trip {
         let ranges = &self.parameters.ranges;
-        let mut scenario = self.template.scenario.clone();
-        let cycle = random.index(self.parameters.cycles.len());
-        scenario.cycle.clone_from(&self.parameters.cycles[cycle]);
+        let mut climate = self.template.climate.clone();
+        let mut initial = self.template.initial.clone();
+        let cycle = random.index(self.cycles.len());
         let window =
             if random.chance(ranges.whole_cycle_share) { None } else { self.draw_window(cycle, random) };
 
@@ -125,15 +129,21 @@ impl Distribution {
         let season =
             ((ambient_degc - SUNLESS_DEGC) / (ranges.ambient_high_degc.0 - SUNLESS_DEGC)).clamp(0.0, 1.0);
         let sun_w = random.between(0.0, ranges.solar_high_w) * season;
-        scenario.climate.ambient_temperature_degc = Celsius(ambient_degc);
-        scenario.climate.solar_gain_w = if dark { 0.0 } else { sun_w };
-        scenario.climate.occupants = 1 + random.index(ranges.occupants_high as usize) as u32;
-        scenario.initial.soak_temperature_degc = Celsius(soak_degc);
-        scenario.initial.state_of_charge_pct = random.between(ranges.charge_low_pct, ranges.charge_high_pct);
+        climate.ambient_temperature_degc = Celsius(ambient_degc);
+        climate.solar_gain_w = if dark { 0.0 } else { sun_w };
+        climate.occupants = 1 + random.index(ranges.occupants_high as usize) as u32;
+        initial.soak_temperature_degc = Celsius(soak_degc);
+        initial.state_of_charge_pct = random.between(ranges.charge_low_pct, ranges.charge_high_pct);
         let parked_in_sun = !from_garage && !dark;
-        scenario.initial.cabin_temperature_degc =
+        initial.cabin_temperature_degc =
             parked_in_sun.then_some(Celsius(soak_degc + ranges.parked_cabin_k_w * sun_w));
-        Trip { origin: self.parameters.scenario.clone(), scenario, window }
+        Trip {
+            origin: Arc::clone(&self.origin),
+            cycle: Arc::clone(&self.cycles[cycle]),
+            climate,
+            initial,
+            window,
+        }
     }
 
     /// Part of a cycle between two standstills; none if the cycle has no such part.
@@ -154,6 +164,7 @@ impl Distribution {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hp_plant::config::scenario::ScenarioParameters;
 
     fn drawn(name: &str) -> Vec<Trip> {
         let distribution = Distribution::load(name, &Garage::default()).expect("built in");
@@ -164,8 +175,12 @@ mod tests {
     #[test]
     fn every_drawn_scenario_passes_the_checks_of_a_scenario_file() {
         for name in ["train-v0", "test-v0"] {
+            let garage = Garage::default();
             for trip in drawn(name) {
-                trip.scenario.validate().unwrap_or_else(|violation| panic!("{name}: {violation:?}"));
+                let origin = garage.experiment(&trip.origin).expect("built in");
+                let mut scenario = ScenarioParameters::clone(&origin.scenario);
+                (scenario.climate, scenario.initial) = (trip.climate, trip.initial);
+                scenario.validate().unwrap_or_else(|violation| panic!("{name}: {violation:?}"));
             }
         }
     }
@@ -173,7 +188,7 @@ mod tests {
     #[test]
     fn training_trips_differ_in_length_and_cover_cold_and_heat() {
         let trips = drawn("train-v0");
-        let ambient = |trip: &Trip| trip.scenario.climate.ambient_temperature_degc.0;
+        let ambient = |trip: &Trip| trip.climate.ambient_temperature_degc.0;
         assert!(
             trips.iter().any(|trip| ambient(trip) < -19.0) && trips.iter().any(|trip| ambient(trip) > 39.0)
         );
@@ -191,7 +206,7 @@ mod tests {
     #[test]
     fn test_trips_use_no_training_cycle() {
         let cycles = |name: &str| {
-            let mut cycles: Vec<String> = drawn(name).into_iter().map(|trip| trip.scenario.cycle).collect();
+            let mut cycles: Vec<Arc<str>> = drawn(name).into_iter().map(|trip| trip.cycle).collect();
             cycles.sort_unstable();
             cycles.dedup();
             cycles

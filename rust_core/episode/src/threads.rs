@@ -9,7 +9,7 @@ const BATCH: usize = 16;
 /// Consecutive entries that can be divided.
 pub trait Stretch: Send + Sized {
     /// Number of entries.
-    fn len(&self) -> usize;
+    fn count(&self) -> usize;
 
     /// Cuts off the first entries; no more than there are.
     fn take(&mut self, count: usize) -> Self;
@@ -47,18 +47,18 @@ impl Threads {
     /// Each thread begins with a share of its own, the same every time, so that what it works on stays in its
     /// core's cache. Then it takes what others have left: one that the machine holds up holds up nobody else.
     pub fn work<S: Stretch>(&mut self, mut all: S, work: impl Fn(S) + Sync) {
-        let count = self.count.min(all.len().div_ceil(BATCH));
+        let count = self.count.min(all.count().div_ceil(BATCH));
         let Some(pool) = self.pool(count) else {
             work(all);
             return;
         };
-        let length = all.len();
+        let length = all.count();
         let bound = |thread: usize| length * thread / count;
         let shares: Vec<Mutex<S>> =
             (0..count).map(|thread| Mutex::new(all.take(bound(thread + 1) - bound(thread)))).collect();
         let next = |share: &Mutex<S>| {
             let mut share = share.lock().unwrap_or_else(PoisonError::into_inner);
-            (share.len() > 0).then(|| share.take(BATCH))
+            (share.count() > 0).then(|| share.take(BATCH))
         };
         let toil = |thread: usize| {
             for place in 0..count {

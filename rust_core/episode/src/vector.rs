@@ -140,7 +140,7 @@ fn cut<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
 }
 
 impl Stretch for Batch<'_> {
-    fn len(&self) -> usize {
+    fn count(&self) -> usize {
         self.episodes.len()
     }
 
@@ -163,7 +163,7 @@ impl Stretch for Batch<'_> {
 }
 
 impl<T: Send> Stretch for Pairs<'_, T> {
-    fn len(&self) -> usize {
+    fn count(&self) -> usize {
         self.episodes.len()
     }
 

@@ -3,7 +3,7 @@
 use crate::command::Command;
 use crate::config::controller::Controller;
 use crate::config::library::{self, Kind, Override};
-use crate::config::scenario::ScenarioParameters;
+use crate::config::scenario::{ClimateParameters, InitialParameters, ScenarioParameters};
 use crate::control::heat_demand_commander;
 use crate::control::hpcu::{Hpcu, HpcuState};
 use crate::drive_cycle::DriveCycle;
@@ -19,18 +19,22 @@ use std::sync::Arc;
 /// A scenario, loaded and ready to run.
 #[derive(Debug, Clone)]
 pub struct Experiment {
-    /// Scenario.
-    pub scenario: ScenarioParameters,
+    /// Scenario as its file gives it; climate and initial state of this run are those below.
+    pub scenario: Arc<ScenarioParameters>,
+    /// Climate of this run.
+    pub climate: ClimateParameters,
+    /// Initial state of this run.
+    pub initial: InitialParameters,
     /// Vehicle.
     pub plant: Arc<Plant>,
     /// Drive cycle.
-    pub cycle: Arc<DriveCycle>,
+    pub cycle: DriveCycle,
     /// Name of the controller's file.
-    pub controller: String,
+    pub controller: Arc<str>,
     /// What that file says.
     pub rules: Arc<Controller>,
     /// Rule-based controller of this scenario.
-    pub hpcu: Hpcu,
+    pub hpcu: Arc<Hpcu>,
 }
 
 /// Why a run ended.
@@ -114,11 +118,13 @@ impl Experiment {
         let rules = Arc::new(Controller::load(&controller, &part("controller"))?);
         Ok(Self {
             plant: Arc::new(Plant::load(&scenario.vehicle, &part("vehicle"))?),
-            cycle: Arc::new(DriveCycle::load(&scenario.cycle)?),
-            controller,
-            hpcu: Hpcu::of(&rules, &scenario),
+            cycle: DriveCycle::load(&scenario.cycle)?,
+            controller: controller.into(),
+            hpcu: Arc::new(Hpcu::of(&rules, &scenario.strategy, scenario.climate.ambient_temperature_degc)),
             rules,
-            scenario,
+            climate: scenario.climate.clone(),
+            initial: scenario.initial.clone(),
+            scenario: Arc::new(scenario),
         })
     }
 
@@ -132,7 +138,7 @@ impl Experiment {
     /// The vehicle before the first step.
     #[must_use]
     pub fn start(&self) -> Run {
-        let state = self.plant.parked(&self.scenario.initial);
+        let state = self.plant.parked(&self.initial);
         Run { memory: self.hpcu.awake(&state), state, steps: 0, record: None, summary: Summary::default() }
     }
 
@@ -144,9 +150,9 @@ impl Experiment {
         Disturbance {
             start_speed_m_s: at(step),
             end_speed_m_s: at(step + 1),
-            ambient_k: self.scenario.climate.ambient_temperature_degc.kelvin(),
-            solar_gain_w: self.scenario.climate.solar_gain_w,
-            occupants: f64::from(self.scenario.climate.occupants),
+            ambient_k: self.climate.ambient_temperature_degc.kelvin(),
+            solar_gain_w: self.climate.solar_gain_w,
+            occupants: f64::from(self.climate.occupants),
         }
     }
 

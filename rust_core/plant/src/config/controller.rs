@@ -168,7 +168,8 @@ mod tests {
              [[ambient_bands]]\nup_to_degc = 5.0\ncontroller.battery.heat_up_to_degc = 10.0\n",
         )
         .expect("valid");
-        let strategy = Experiment::load("jeffs2019/case1-1", None, &[]).expect("built in").scenario.strategy;
+        let strategy =
+            Experiment::load("jeffs2019/case1-1", None, &[]).expect("built in").scenario.strategy.clone();
         let at = |degc: f64| controller.at(Celsius(degc), &strategy);
         assert_eq!(at(-10.0).1.battery, BatteryTreatment::Isolate);
         assert_eq!(at(-10.0).0.battery.heat_up_to_degc, Celsius(20.0));

@@ -7,9 +7,10 @@ use super::pid::{ResetGains, ResetPid};
 use crate::circuits::assembly::NODES;
 use crate::circuits::branches::Branch;
 use crate::command::{Connection, Demand, Member};
+use crate::config::Celsius;
 use crate::config::controller::{Controller, HpcuParameters};
 use crate::config::coolant::PidParameters;
-use crate::config::scenario::{BatteryTreatment, ClimateControl, ScenarioParameters, Strategy};
+use crate::config::scenario::{BatteryTreatment, ClimateControl, Strategy};
 use crate::numerics::thermal_network::Node;
 use crate::plant::{CONTROL_PERIOD_S, Plant};
 use crate::state::State;
@@ -80,11 +81,10 @@ struct PowerGains {
 }
 
 impl Hpcu {
-    /// The controller of a scenario.
+    /// The controller of a strategy at an ambient temperature.
     #[must_use]
-    pub fn of(controller: &Controller, scenario: &ScenarioParameters) -> Self {
-        let ambient = scenario.climate.ambient_temperature_degc;
-        let (parameters, strategy) = controller.at(ambient, &scenario.strategy);
+    pub fn of(controller: &Controller, strategy: &Strategy, ambient: Celsius) -> Self {
+        let (parameters, strategy) = controller.at(ambient, strategy);
         Self::new(parameters, strategy)
     }
 

@@ -1,0 +1,1 @@
+"""Speed of plant and environments, measured side by side with others."""

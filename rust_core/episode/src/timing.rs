@@ -1,0 +1,84 @@
+//! Time that a plant step takes, measured over whole trips.
+
+use crate::action::{ActionTable, DEFAULT_ROWS, Defaults};
+use crate::random::Random;
+use hp_plant::command::{ACTUATORS, Command};
+use hp_plant::error::PlantResult;
+use hp_plant::simulation::{Experiment, Run};
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+/// Time of all steps of a trip with the compressor on, and their number.
+///
+/// With a seed each second has random levels of the default actions; otherwise the HPCU drives, and its time
+/// counts. The clock is read where the compressor starts and stops, not in between.
+///
+/// # Errors
+/// None with the actuators that there are.
+pub fn compressor_on_steps(experiment: &Experiment, seed: Option<u64>) -> PlantResult<(Duration, usize)> {
+    let random = seed.map(|seed| random_commands(experiment, seed)).transpose()?;
+    let step = |run: &mut Run| {
+        let command = match &random {
+            Some(commands) => commands[run.steps],
+            None => experiment.rule_based_command(run),
+        };
+        let disturbance = experiment.disturbance(run.steps);
+        run.steps += 1;
+        experiment.plant.step(&mut run.state, &command, &disturbance).refrigeration.running()
+    };
+    let mut rehearsal = experiment.start();
+    let running: Vec<bool> = (0..experiment.cycle.duration_s()).map(|_| step(&mut rehearsal)).collect();
+    let mut run = experiment.start();
+    let mut spent = Duration::ZERO;
+    for stretch in running.chunk_by(|one, next| one == next) {
+        let start = Instant::now();
+        for _ in stretch {
+            black_box(step(&mut run));
+        }
+        if stretch[0] {
+            spent += start.elapsed();
+        }
+    }
+    Ok((spent, running.into_iter().filter(|&running| running).count()))
+}
+
+fn random_commands(experiment: &Experiment, seed: u64) -> PlantResult<Vec<Command>> {
+    let names: Vec<String> = ACTUATORS[..DEFAULT_ROWS].iter().map(|row| row.name.to_owned()).collect();
+    let table = ActionTable::new(&names)?;
+    let defaults = Defaults::of(experiment);
+    let mut random = Random::seeded(seed);
+    let commands = (0..experiment.cycle.duration_s()).map(|second| {
+        let options = table.option_counts().iter().enumerate();
+        let values: Vec<f32> =
+            options.map(|(column, &count)| table.value(column, random.index(count))).collect();
+        defaults.complete(&table, &values, experiment, second as f64)
+    });
+    Ok(commands.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_steps_timed_are_those_with_the_compressor_on() {
+        let experiment = Experiment::load("jeffs2019/case1-4", None, &[]).expect("built in");
+        let mut run = experiment.start();
+        let mut running = 0;
+        for _ in 0..experiment.cycle.duration_s() {
+            let command = experiment.rule_based_command(&mut run);
+            experiment.step(&mut run, &command);
+            running += usize::from(run.record.is_some_and(|record| record.refrigeration.running()));
+        }
+        let (spent, steps) = compressor_on_steps(&experiment, None).expect("built in");
+        assert_eq!(steps, running);
+        assert!(steps > 600 && spent > Duration::ZERO);
+    }
+
+    #[test]
+    fn random_actions_start_the_compressor() {
+        let experiment = Experiment::load("jeffs2019/case1-4", None, &[]).expect("built in");
+        let (_, steps) = compressor_on_steps(&experiment, Some(1)).expect("built in");
+        assert!(steps > 100 && steps < experiment.cycle.duration_s(), "{steps} steps");
+    }
+}
