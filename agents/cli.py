@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from agents.commands.benchmark import benchmark
 from agents.commands.calibrate import calibrate
 from agents.commands.export import export
 from agents.commands.reproduce import reproduce
@@ -20,6 +21,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 for command in (
+    benchmark,
     run,
     scenarios,
     reproduce,

@@ -33,8 +33,12 @@ def train(
     json: Annotated[bool, typer.Option("--json", help="Print the outcome as JSON.")] = False,
 ) -> None:
     """Trains a policy and keeps all that is needed to repeat it."""
+    import os
     from dataclasses import asdict
 
+    # Threads of torch that wait by spinning bring it to a crawl as soon as anything else runs on the machine.
+    # Read when torch is loaded, which is below.
+    os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
     try:
         from agents.training import configuration
         from agents.training import train as training

@@ -8,7 +8,7 @@ from stable_baselines3 import PPO, SAC
 from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.vec_env import VecEnv
 
-from agents.training import environments
+from agents.training import branches, environments
 from agents.training.configuration import RecurrentPPOHyperparameters, Training
 
 _ALGORITHMS: Final[dict[str, tuple[type[BaseAlgorithm], str]]] = {
@@ -37,6 +37,7 @@ def make(training: Training, envs: VecEnv, seed: int) -> BaseAlgorithm:
         device="cpu",
         **arguments,
     )
+    branches.install(model)
     environments.seed(envs, seed)
     return model
 

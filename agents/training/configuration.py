@@ -7,7 +7,15 @@ from pathlib import Path
 from typing import Annotated, Any, Final, Literal, Self, TypeAlias
 
 import tomlkit
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    ValidationError,
+    field_validator,
+    model_validator,
+)
 
 from agents.validation import one_line
 from hp_gym import _core
@@ -17,6 +25,7 @@ _LONGEST_BASE_CHAIN: Final = 8
 Count: TypeAlias = Annotated[int, Field(ge=1)]
 Positive: TypeAlias = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative: TypeAlias = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+Pair: TypeAlias = Annotated[list[float], Field(min_length=2, max_length=2)]
 Share: TypeAlias = Annotated[float, Field(ge=0.0, le=1.0)]
 
 
@@ -82,6 +91,22 @@ class NormalisationSettings(_Table):
     reward_clip: Positive = 10.0
     reward_scale: Positive = 1.0
     """Factor on rewards; points of the environment are of the order of a hundredth a second."""
+    typical_cost: list[Pair] | None = None
+    """Ambient temperatures in degC, rising, and what a trip there costs in points; rewards are divided by it.
+
+    A cold trip costs twenty times a mild one: without this, mild weather is learnt last. What is best for a
+    trip stays the same.
+    """
+
+    @field_validator("typical_cost")
+    @classmethod
+    def _rises(cls, table: list[list[float]] | None) -> list[list[float]] | None:
+        rows = table if table is not None else [[0.0, 1.0]]
+        degc = [row[0] for row in rows]
+        if not rows or degc != sorted(set(degc)) or min(row[1] for row in rows) <= 0.0:
+            message = "must be pairs of rising temperatures and costs above 0"
+            raise ValueError(message)
+        return table
 
 
 class ValidationSettings(_Table):
@@ -94,6 +119,30 @@ class ValidationSettings(_Table):
     """That of the training by default, with seeds that training does not use."""
     reward: str | dict[str, float | str] = "balanced"
     """What the score is counted in, whatever the policy is trained with."""
+
+
+class ImitationSettings(_Table):
+    """A warm start: the policy imitates a rule-based controller before it learns from rewards."""
+
+    teacher: str = "hpcu-tuned"
+    """Controller, by name or path."""
+    rounds: Count = 3
+    """In the first the teacher drives, in the others mostly the policy; the teacher says what it would do."""
+    environments: Count = 512
+    steps: Count = 130
+    """Decisions in each environment and round."""
+    policy_share: Share = 0.7
+    """Share of the environments that the policy drives after the first round."""
+    disturbed_share: Share = 0.1
+    """Share of decisions in which some actuators do what chance says."""
+    disturbed_actuators: Share = 0.3
+    """Share of the actuators that do so then."""
+    epochs: Count = 8
+    """Passes over the demonstrations of all rounds so far, in each round."""
+    batch_size: Count = 2048
+    learning_rate: Positive = 1e-3
+    value_weight: NotNegative = 0.5
+    """Of the squared error of the value function beside the likelihood of the teacher's actions."""
 
 
 class PPOHyperparameters(_Table):
@@ -151,6 +200,7 @@ class _Common(_Table):
 
 class _OnPolicy(_Common):
     hyperparameters: PPOHyperparameters
+    imitation: ImitationSettings | None = None
 
     @model_validator(mode="after")
     def _whole_batches(self) -> Self:
@@ -188,6 +238,7 @@ class RecurrentPPOTraining(_OnPolicy):
 
     algorithm: Literal["recurrent-ppo"]
     hyperparameters: RecurrentPPOHyperparameters
+    imitation: None = None
 
 
 class SACTraining(_Common):

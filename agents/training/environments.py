@@ -1,35 +1,90 @@
 """The environments that a policy is trained on, and their state."""
 
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper, VecNormalize
 
-from agents.training.configuration import Training
+from agents.training.configuration import Training, TrainingConfigurationError
+from hp_gym import _core, settings
 from hp_gym.sb3 import SB3VecEnv
+
+AMBIENT_ROW: Final = "ambient_temperature_degc"
+
+
+class RewardScale:
+    """Factors on rewards: one for all, or less where a trip costs more because of its ambient temperature.
+
+    Args:
+        training: The configuration.
+
+    Raises:
+        TrainingConfigurationError: The ambient temperature is wanted and not observed.
+    """
+
+    def __init__(self, training: Training) -> None:
+        self._factor = training.normalisation.reward_scale
+        table = training.normalisation.typical_cost
+        self._costs: NDArray[np.float64] | None = None
+        if table is not None:
+            self._costs = np.array(table)
+            self._row, self._low_degc, self._high_degc = _ambient_row(training)
+
+    @property
+    def is_one(self) -> bool:
+        """Whether rewards stay as they are."""
+        return self._costs is None and self._factor == 1.0
+
+    def factors(self, observations: NDArray[np.float32]) -> NDArray[np.float64]:
+        """Returns the factor of each environment that gave these observations; the same all trip long."""
+        if self._costs is None:
+            return np.full(len(observations), self._factor)
+        share = 0.5 * (observations[:, self._row] + 1.0)
+        ambient_degc = self._low_degc + share * (self._high_degc - self._low_degc)
+        points: NDArray[np.float64] = np.interp(ambient_degc, self._costs[:, 0], self._costs[:, 1])
+        return self._factor / points
 
 
 class ScaledReward(VecEnvWrapper):
-    """Environments whose rewards are multiplied by a factor.
+    """Environments whose rewards are scaled.
 
     Args:
         venv: The environments.
-        factor: The factor.
+        scale: Gives the factors.
     """
 
-    def __init__(self, venv: VecEnv, factor: float) -> None:
+    def __init__(self, venv: VecEnv, scale: RewardScale) -> None:
         super().__init__(venv)
-        self._factor = np.float32(factor)
+        self._scale = scale
+        self.factors = np.zeros(venv.num_envs)
+        """Of the trips under way."""
 
     def reset(self) -> Any:
         """Begins trips."""
-        return self.venv.reset()
+        observations = self.venv.reset()
+        self.factors = self._scale.factors(np.asarray(observations))
+        return observations
 
     def step_wait(self) -> Any:
         """Drives all environments on."""
         observations, rewards, done, infos = self.venv.step_wait()
-        return observations, rewards * self._factor, done, infos
+        scaled = (rewards * self.factors).astype(np.float32)
+        # Of the trip that has begun, where one has ended.
+        self.factors = self._scale.factors(np.asarray(observations))
+        return observations, scaled, done, infos
+
+
+def _ambient_row(training: Training) -> tuple[int, float, float]:
+    """Place of the ambient temperature among the observations, with its bounds in degC."""
+    chosen = settings.Settings(observations=training.environment.observations)
+    episode = _core.Episode(chosen.to_json(), None, settings.DEFAULT_DISTRIBUTION)
+    for index, (name, _, low, high, _) in enumerate(episode.observation_rows()):
+        if name == AMBIENT_ROW:
+            return index, low, high
+    message = f"normalisation.typical_cost needs {AMBIENT_ROW} among the observations"
+    raise TrainingConfigurationError(message)
 
 
 def make(training: Training) -> VecEnv:
@@ -44,8 +99,9 @@ def make(training: Training) -> VecEnv:
         threads=training.environments.threads,
         **training.environment.model_dump(),
     )
-    if normalisation.reward_scale != 1.0:
-        envs = ScaledReward(envs, normalisation.reward_scale)
+    scale = RewardScale(training)
+    if not scale.is_one:
+        envs = ScaledReward(envs, scale)
     if normalisation.observations or normalisation.rewards:
         envs = VecNormalize(
             envs,
@@ -70,6 +126,14 @@ def normaliser(envs: VecEnv) -> VecNormalize | None:
     return envs if isinstance(envs, VecNormalize) else None
 
 
+def _scaled(envs: VecEnv) -> ScaledReward | None:
+    while isinstance(envs, VecEnvWrapper):
+        if isinstance(envs, ScaledReward):
+            return envs
+        envs = envs.venv
+    return None
+
+
 def get_state(envs: VecEnv) -> dict[str, Any]:
     """Returns all that the future of environments depends on, as tensors and plain values."""
     inner = envs.unwrapped
@@ -82,6 +146,9 @@ def get_state(envs: VecEnv) -> dict[str, Any]:
         "episode_returns": torch.from_numpy(returns),
         "episode_lengths": torch.from_numpy(lengths),
     }
+    scaled = _scaled(envs)
+    if scaled is not None:
+        told["reward_factors"] = torch.from_numpy(scaled.factors.copy())
     wrapper = normaliser(envs)
     if wrapper is not None:
         told["returns"] = torch.from_numpy(wrapper.returns.copy())
@@ -109,6 +176,9 @@ def set_state(envs: VecEnv, told: dict[str, Any]) -> None:
     data = told["states"].numpy().tobytes()
     inner.venv.set_state([data[end - size : end] for end, size in zip(ends, told["sizes"], strict=True)])
     inner.set_episodes_so_far(told["episode_returns"].numpy(), told["episode_lengths"].numpy())
+    scaled = _scaled(envs)
+    if scaled is not None:
+        scaled.factors = told["reward_factors"].numpy().copy()
     wrapper = normaliser(envs)
     if wrapper is not None:
         wrapper.returns = told["returns"].numpy().copy()

@@ -2,8 +2,8 @@
 
 import threading
 from collections.abc import Generator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +11,14 @@ import torch
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.logger import Logger, TensorBoardOutputFormat
+from stable_baselines3.common.on_policy_algorithm import OnPolicyAlgorithm
 from torch.utils.tensorboard.writer import SummaryWriter
 
 from agents.output import progress_console
-from agents.training import algorithms, checkpoint, environments
-from agents.training.configuration import Training
+from agents.training import algorithms, checkpoint, environments, imitation
+from agents.training.configuration import MaskablePPOTraining, PPOTraining, Training
 from agents.training.run_folder import RunFolder
-from agents.training.validation import Figures
+from agents.training.validation import Figures, Validation
 from agents.training.watch import Run, Watch
 
 
@@ -60,9 +61,10 @@ def start(training: Training, name: str, seed: int, out: Path) -> Outcome:
     """
     # Before the folder is made, so that a wrong configuration leaves nothing behind.
     model = _model(training, seed)
+    rules = Validation(training).of_rules()
     folder = RunFolder(out)
     folder.create(training, name, seed)
-    return _learn(Run(training, name, seed, folder), model, None)
+    return _learn(Run(training, name, seed, folder), model, {"rules": asdict(rules)})
 
 
 def resume(out: Path) -> Outcome:
@@ -77,12 +79,13 @@ def resume(out: Path) -> Outcome:
     training, name, seed = folder.reopen()
     model = _model(training, seed)
     found = folder.latest_checkpoint()
+    run = Run(training, name, seed, folder)
     if found is None:
-        return _learn(Run(training, name, seed, folder), model, None)
+        return _learn(run, model, {"rules": asdict(Validation(training).of_rules())})
     path, content = found
     checkpoint.restore(content, model, path)
     progress_console.print(f"Going on from {model.num_timesteps:,} decisions.")
-    return _learn(Run(training, name, seed, folder), model, content)
+    return _learn(run, model, content["notes"])
 
 
 def _model(training: Training, seed: int) -> BaseAlgorithm:
@@ -90,7 +93,7 @@ def _model(training: Training, seed: int) -> BaseAlgorithm:
     return algorithms.make(training, environments.make(training), seed)
 
 
-def _learn(run: Run, model: BaseAlgorithm, content: dict[str, Any] | None) -> Outcome:
+def _learn(run: Run, model: BaseAlgorithm, notes: dict[str, Any]) -> Outcome:
     training, folder = run.training, run.folder
     columns = (
         TextColumn("{task.description}"),
@@ -109,19 +112,23 @@ def _learn(run: Run, model: BaseAlgorithm, content: dict[str, Any] | None) -> Ou
         task = progress.add_task(
             "train", total=training.total_decisions, told="", completed=model.num_timesteps
         )
-        watch = Watch(run, progress, task, content["notes"] if content else None)
+        if model.num_timesteps == 0:
+            _imitate(model, run, progress)
+        watch = Watch(run, progress, task, notes)
         remaining = training.total_decisions - model.num_timesteps
         try:
             # In stable-baselines3 the total grows by the decisions already made.
             model.learn(
                 remaining,
                 callback=watch,
-                reset_num_timesteps=content is None,
+                reset_num_timesteps=model.num_timesteps == 0,
                 log_interval=_LOG[training.algorithm],
             )
             watch.finish()
-        except KeyboardInterrupt:
-            watch.interrupted("by the user")
+        except (KeyboardInterrupt, OSError) as error:
+            # On a full disk this may fail as well; the first error is the one to tell.
+            with suppress(OSError):
+                watch.interrupted(str(error) or "stopped by the user")
             raise
         finally:
             assert model.env is not None
@@ -138,6 +145,17 @@ def _learn(run: Run, model: BaseAlgorithm, content: dict[str, Any] | None) -> Ou
     )
 
 
+def _imitate(model: BaseAlgorithm, run: Run, progress: Progress) -> None:
+    """The warm start, where the configuration has one."""
+    training = run.training
+    if not isinstance(training, PPOTraining | MaskablePPOTraining) or training.imitation is None:
+        return
+    assert isinstance(model, OnPolicyAlgorithm)
+    passes = training.imitation.rounds * training.imitation.epochs
+    task = progress.add_task("imitate", total=passes, told="passes over demonstrations")
+    imitation.warm_start(model, training, run.seed, lambda: progress.advance(task))
+
+
 # In rollouts, and for SAC in trips.
 _LOG = {"ppo": 1, "maskable-ppo": 1, "recurrent-ppo": 1, "sac": 50}
 
@@ -146,13 +164,19 @@ _LOG = {"ppo": 1, "maskable-ppo": 1, "recurrent-ppo": 1, "sac": 50}
 def _logger(folder: Path, decisions: int) -> Generator[Logger]:
     """TensorBoard logs in which a process that was killed leaves no trace beyond its checkpoint."""
     folder.mkdir(parents=True, exist_ok=True)
-    written = TensorBoardOutputFormat(str(folder))
-    written.writer.close()
-    written.writer = SummaryWriter(str(folder), purge_step=decisions or None)
+    written = _TensorBoard(SummaryWriter(str(folder), purge_step=decisions or None))
     try:
         yield Logger(str(folder), [written])
     finally:
         written.writer.close()
+
+
+class _TensorBoard(TensorBoardOutputFormat):
+    """Writes to a given writer."""
+
+    def __init__(self, writer: SummaryWriter) -> None:
+        self.writer = writer
+        self._is_closed = False
 
 
 @contextmanager

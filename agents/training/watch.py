@@ -41,7 +41,7 @@ class Watch(BaseCallback):
         run: The run.
         progress: Bar to move.
         task: The bar's task.
-        notes: What an earlier process remembered at its checkpoint.
+        notes: What was remembered at a checkpoint; `rules`, the figures of the HPCU, from the beginning.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class Watch(BaseCallback):
         run: Run,
         progress: Progress,
         task: TaskID,
-        notes: dict[str, Any] | None = None,
+        notes: dict[str, Any],
     ) -> None:
         super().__init__()
         self._run, self._training, self._folder = run, run.training, run.folder
@@ -62,9 +62,8 @@ class Watch(BaseCallback):
             observations=environment.observations,
             control_interval_s=environment.control_interval_s,
         )
-        notes = notes or {}
         self._history: list[dict[str, Any]] = notes.get("history", [])
-        self._rules = Figures(**notes["rules"]) if "rules" in notes else self._validation.of_rules()
+        self._rules = Figures(**notes["rules"])
         self._next_validation: int = notes.get("next_validation", run.training.validation.interval_decisions)
         self._next_checkpoint: int = notes.get("next_checkpoint", run.training.checkpoint_interval_decisions)
         self._earlier_s: float = notes.get("wall_s", 0.0)

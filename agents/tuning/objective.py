@@ -1,6 +1,6 @@
 """What choices cost on training trips."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -10,12 +10,11 @@ import numpy as np
 
 from agents.tuning import rules
 from agents.tuning.bands import Band, training_distribution
-from hp_gym.overrides import Value
 from hp_gym.policies import HpcuPolicy
 from hp_gym.vector_env import EVHeatPumpVectorEnv
 
-REWARD: Final[Mapping[str, Value]] = {"base": "balanced", "heat_left_credit": 0.25}
-"""Also what the reference policies are trained for: arrival credit midway between 0 and 0.5; both count."""
+REWARD: Final = "reference"
+"""What the reference policies are trained for, too (configs/rewards/reference.toml)."""
 
 
 class Objective:

@@ -40,6 +40,7 @@ mod _core {
             Kind::Calibration,
             Kind::Episodes,
             Kind::Reward,
+            Kind::Benchmark,
             Kind::Training,
         ];
         kinds.into_iter().find(|kind| kind.word() == word).ok_or_else(|| {

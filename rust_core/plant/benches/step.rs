@@ -1,35 +1,114 @@
-//! Plant step and whole runs: `cargo bench -p hp_plant`.
+//! Plant step and its expensive parts: `cargo bench -p hp_plant`.
+//!
+//! Step times are per second driven: criterion's "thrpt" is steps per second. Instruction counts, which a busy machine
+//! does not disturb, come from `examples/step_cost.rs`.
 
-use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
-use hp_plant::simulation::Experiment;
+#[path = "support/workload.rs"]
+mod workload;
+
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use hp_plant::circuits::assembly::{LinkConditions, NODES};
+use hp_plant::circuits::branches::{BRANCH_COUNT, Branch};
+use hp_plant::circuits::refrigeration_loop::{LoopDemand, SupplyLimit, WarmStart};
+use hp_plant::numerics::thermal_network::NodeValues;
+use hp_plant::plant::StepRecord;
+use hp_plant::simulation::{Experiment, Run};
 use std::hint::black_box;
+use workload::{Segment, compressor_on_segments, random_segments};
 
-fn whole_runs(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("run");
-    group.sample_size(20);
-    for name in ["jeffs2019/case1-1", "jeffs2019/case1-4", "ours/hot-soak-plus35"] {
-        let experiment = Experiment::load(name, None, &[]).expect("built-in scenario");
-        group.bench_function(name, |bencher| bencher.iter(|| black_box(experiment.totals())));
+/// Mean step of the paper's scenarios while the compressor runs, and of all scenarios under random actions.
+fn steps(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("plant step");
+    group.sample_size(10);
+    let workloads: [(&str, Vec<Segment>); 2] =
+        [("HPCU, compressor on", compressor_on_segments()), ("random actions", random_segments())];
+    for (name, segments) in workloads {
+        group.throughput(Throughput::Elements(segments.iter().map(|segment| segment.steps as u64).sum()));
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| segments.iter().map(|segment| black_box(segment.replay())).sum::<f64>());
+        });
     }
     group.finish();
 }
 
-fn single_step(criterion: &mut Criterion) {
-    let experiment = Experiment::load("jeffs2019/case1-4", None, &[]).expect("built-in scenario");
+/// A scenario some time after its start, and what happened in its last step.
+fn moment(scenario: &str, after_s: usize) -> (Experiment, Run, StepRecord) {
+    let experiment = Experiment::load(scenario, None, &[]).expect("built-in scenario");
     let mut run = experiment.start();
-    for _ in 0..600 {
+    for _ in 0..after_s {
         let command = experiment.rule_based_command(&mut run);
         experiment.step(&mut run, &command);
     }
-    let command = experiment.rule_based_command(&mut run);
-    let disturbance = experiment.disturbance(run.steps);
-    criterion.bench_function("plant step, compressor on", |bencher| {
-        bencher.iter_batched_ref(
-            || run.state,
-            |state| black_box(experiment.plant.step(state, &command, &disturbance)),
-            BatchSize::SmallInput,
-        );
+    let record = run.record.expect("a step was made");
+    (experiment, run, record)
+}
+
+fn refrigerant(criterion: &mut Criterion) {
+    let (experiment, run, record) = moment("jeffs2019/case1-4", 600);
+    let cycle = &experiment.plant.refrigeration;
+    let boundary = record.boundary;
+    let demand = LoopDemand {
+        power_limit_w: record.refrigeration.electric_power_w,
+        speed_limit_rev_s: experiment.plant.vehicle.refrigeration.compressor.maximum_speed_rev_s,
+        hold_minimum_speed: false,
+    };
+    let solution = run.state.refrigeration.warm_start.expect("the compressor runs");
+    // About as far away as the solution of the second before.
+    let near = WarmStart { condensing_k: solution.condensing_k - 0.05, ..solution };
+    let mut group = criterion.benchmark_group("refrigerant solve");
+    group.bench_function("warm", |b| b.iter(|| cycle.solve(&boundary, &demand, black_box(Some(&near)))));
+    group.bench_function("cold", |b| b.iter(|| cycle.solve(&boundary, &demand, black_box(None))));
+    // More power than the hot coolant can take at lowest speed: the start is refused.
+    let (limit_k, sensitivity_k_w) = (boundary.hot_supply.limit_k, boundary.hot_supply.sensitivity_k_w);
+    let mut full = boundary;
+    full.hot_supply = SupplyLimit { base_k: limit_k - 100.0 * sensitivity_k_w, ..boundary.hot_supply };
+    group.bench_function("refused", |b| b.iter(|| cycle.solve(&full, &demand, black_box(Some(&near)))));
+    group.finish();
+
+    let table = cycle.table();
+    let mut group = criterion.benchmark_group("property look-up");
+    group.bench_function("suction state", |b| {
+        b.iter(|| table.suction_state(black_box(271.3), black_box(4.9)))
     });
+    group.bench_function("condensing isobar", |b| b.iter(|| table.condensing_isobar(black_box(331.7))));
+    group.finish();
+}
+
+fn network(criterion: &mut Criterion) {
+    let (experiment, run, _) = moment("jeffs2019/case1-4", 600);
+    let plant = &experiment.plant;
+    let mut branches_w_k = [0.0; BRANCH_COUNT];
+    for branch in [Branch::CabinHtc, Branch::MotorChiller, Branch::BatteryChiller, Branch::AmbientChiller] {
+        branches_w_k[branch as usize] = 150.0;
+    }
+    let now = LinkConditions {
+        htc_rate_w_k: 900.0,
+        chiller_rate_w_k: 900.0,
+        branches_w_k,
+        ventilation: plant.vehicle.cabin.ventilation(0.5, 0.3, 1.0),
+        recovery_w_k: 20.0,
+        recovery_meets_chiller: false,
+        speed_m_s: 20.0,
+        battery_ambient_w_k: 10.0,
+        ambient_k: 263.15,
+    };
+    let mut sources_w = NodeValues::default();
+    sources_w[NODES.htc_supply.index()] = 3000.0;
+    let links = plant.assembly.links(&plant.vehicle, &now);
+    let factorised = plant.assembly.network.factorise(&links, 1.0);
+    let start_k = run.state.temperatures_k;
+    let mut group = criterion.benchmark_group("thermal network");
+    group.bench_function("assemble and factorise", |b| {
+        b.iter(|| plant.assembly.network.factorise(black_box(&links), black_box(1.0)));
+    });
+    group.bench_function("solve", |b| {
+        b.iter(|| factorised.advance(black_box(&start_k), black_box(&sources_w)))
+    });
+    group.finish();
+}
+
+fn controller(criterion: &mut Criterion) {
+    let (experiment, run, _) = moment("jeffs2019/case1-4", 600);
     criterion.bench_function("HPCU", |bencher| {
         bencher.iter_batched_ref(
             || run,
@@ -39,5 +118,5 @@ fn single_step(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, whole_runs, single_step);
+criterion_group!(benches, steps, refrigerant, network, controller);
 criterion_main!(benches);

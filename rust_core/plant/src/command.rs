@@ -209,7 +209,16 @@ pub fn actuator(name: &str) -> PlantResult<usize> {
 
 /// Physical ranges of the actuators of one vehicle.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ActuatorRanges([(f64, f64); ACTUATOR_COUNT]);
+pub struct ActuatorRanges {
+    low: [f64; ACTUATOR_COUNT],
+    high: [f64; ACTUATOR_COUNT],
+    /// Physical values at -1 and between -1 and 1. An option lies in the middle of its part of the range: it is half a
+    /// part away from its ends.
+    origin: [f64; ACTUATOR_COUNT],
+    width: [f64; ACTUATOR_COUNT],
+    /// Natural logarithm of the compressor's highest over its lowest power.
+    compressor_logarithm: f64,
+}
 
 impl ActuatorRanges {
     /// Ranges of a vehicle.
@@ -233,48 +242,61 @@ impl ActuatorRanges {
         }
         ranges[RECIRCULATION] = (0.0, vehicle.cabin.maximum_recirculation);
         ranges[CABIN_SET_POINT] = CABIN_SET_POINT_RANGE_K;
-        Self(ranges)
+        let margin = |row: usize| if matches!(ACTUATORS[row].scale, Scale::Choice(_)) { 0.5 } else { 0.0 };
+        Self {
+            low: ranges.map(|(low, _)| low),
+            high: ranges.map(|(_, high)| high),
+            origin: std::array::from_fn(|row| ranges[row].0 - margin(row)),
+            width: std::array::from_fn(|row| ranges[row].1 - ranges[row].0 + 2.0 * margin(row)),
+            compressor_logarithm: (ranges[COMPRESSOR].1 / ranges[COMPRESSOR].0).ln(),
+        }
     }
 
     /// Lowest and highest physical value of an actuator.
     #[must_use]
     pub fn range(&self, actuator: usize) -> (f64, f64) {
-        self.0[actuator]
+        (self.low[actuator], self.high[actuator])
     }
 
     /// Normalised value of a physical one; values outside the range are held at its ends.
     #[must_use]
     pub fn normalise(&self, actuator: usize, value: f64) -> f32 {
-        let (low, high) = self.0[actuator];
-        let normalised = match ACTUATORS[actuator].scale {
-            Scale::Choice(options) => (2.0 * value + 1.0) / options.len() as f64 - 1.0,
-            Scale::Linear => 2.0 * (value - low) / (high - low) - 1.0,
-            Scale::OffThenLogarithmic if value < low => -1.0,
-            Scale::OffThenLogarithmic => {
-                COMPRESSOR_OFF_BELOW + (1.0 - COMPRESSOR_OFF_BELOW) * (value / low).ln() / (high / low).ln()
+        match ACTUATORS[actuator].scale {
+            Scale::OffThenLogarithmic => self.normalised_compressor(value),
+            Scale::Choice(_) | Scale::Linear => {
+                normalised(value, self.origin[actuator], self.width[actuator])
             }
-        };
-        normalised.clamp(-1.0, 1.0) as f32
+        }
     }
 
     /// Physical value of a normalised one.
     #[must_use]
     pub fn physical(&self, actuator: usize, normalised: f32) -> f64 {
-        let (low, high) = self.0[actuator];
-        let x = f64::from(normalised).clamp(-1.0, 1.0);
+        let share = share(normalised);
         match ACTUATORS[actuator].scale {
-            Scale::Choice(options) => {
-                let count = options.len() as f64;
-                (0.5 * (x + 1.0) * count).floor().clamp(0.0, count - 1.0)
-            }
-            Scale::Linear => low + 0.5 * (x + 1.0) * (high - low),
-            // Half a single-precision step below the threshold still counts as the lowest power.
-            Scale::OffThenLogarithmic if x < COMPRESSOR_OFF_BELOW - 1e-6 => 0.0,
-            Scale::OffThenLogarithmic => {
-                let share = ((x - COMPRESSOR_OFF_BELOW) / (1.0 - COMPRESSOR_OFF_BELOW)).max(0.0);
-                low * (share * (high / low).ln()).exp()
-            }
+            Scale::Choice(options) => chosen(share, options.len()) as f64,
+            Scale::Linear => self.origin[actuator] + share * self.width[actuator],
+            Scale::OffThenLogarithmic => self.compressor(normalised),
         }
+    }
+
+    fn normalised_compressor(&self, value: f64) -> f32 {
+        let low = self.low[COMPRESSOR];
+        if value < low {
+            return -1.0;
+        }
+        let share = (value / low).ln() / self.compressor_logarithm;
+        (COMPRESSOR_OFF_BELOW + (1.0 - COMPRESSOR_OFF_BELOW) * share).clamp(-1.0, 1.0) as f32
+    }
+
+    fn compressor(&self, normalised: f32) -> f64 {
+        let x = f64::from(normalised).clamp(-1.0, 1.0);
+        // Half a single-precision step below the threshold still counts as the lowest power.
+        if x < COMPRESSOR_OFF_BELOW - 1e-6 {
+            return 0.0;
+        }
+        let share = ((x - COMPRESSOR_OFF_BELOW) / (1.0 - COMPRESSOR_OFF_BELOW)).max(0.0);
+        self.low[COMPRESSOR] * (share * self.compressor_logarithm).exp()
     }
 
     /// The command for a demand.
@@ -284,17 +306,20 @@ impl ActuatorRanges {
         for (i, member) in Member::ALL.into_iter().enumerate() {
             let asked = demand.connections[i];
             values[i] = member.options().iter().position(|&option| option == asked).unwrap_or(0) as f64;
-            values[REQUESTS + i] = demand.requests_w[i];
-            values[VALVES + i] = demand.valves[i];
         }
         values[PTC] = f64::from(u8::from(demand.ptc_allowed));
-        values[COMPRESSOR] = demand.compressor_power_w;
         values[RECIRCULATION] = demand.recirculation;
         values[BLOWER] = demand.blower_level;
         values[HTC_FLOW] = demand.htc_flow_kg_s;
         values[CHILLER_FLOW] = demand.chiller_flow_kg_s;
+        values[REQUESTS..REQUESTS + 6].copy_from_slice(&demand.requests_w);
+        values[VALVES..VALVES + 6].copy_from_slice(&demand.valves);
         values[CABIN_SET_POINT] = demand.cabin_set_point_k;
-        Command(std::array::from_fn(|row| self.normalise(row, values[row])))
+        // All rows alike, so that several are worked out at once; the compressor's is replaced.
+        let mut command =
+            std::array::from_fn(|row| normalised(values[row], self.origin[row], self.width[row]));
+        command[COMPRESSOR] = self.normalised_compressor(demand.compressor_power_w);
+        Command(command)
     }
 
     /// Sets one actuator of a command to a physical value.
@@ -344,18 +369,41 @@ impl ActuatorRanges {
     /// The demand that a command stands for.
     #[must_use]
     pub fn decode(&self, command: &Command) -> Demand {
-        let value = |row: usize| self.physical(row, command.0[row]);
+        let shares = command.0.map(share);
+        let values: [f64; ACTUATOR_COUNT] =
+            std::array::from_fn(|row| self.origin[row] + shares[row] * self.width[row]);
         Demand {
-            connections: std::array::from_fn(|i| Member::ALL[i].options()[value(i) as usize]),
-            ptc_allowed: value(PTC) > 0.5,
-            compressor_power_w: value(COMPRESSOR),
-            recirculation: value(RECIRCULATION),
-            blower_level: value(BLOWER),
-            htc_flow_kg_s: value(HTC_FLOW),
-            chiller_flow_kg_s: value(CHILLER_FLOW),
-            requests_w: std::array::from_fn(|i| value(REQUESTS + i)),
-            valves: std::array::from_fn(|i| value(VALVES + i)),
-            cabin_set_point_k: value(CABIN_SET_POINT),
+            connections: std::array::from_fn(|i| {
+                let options = Member::ALL[i].options();
+                options[chosen(shares[i], options.len())]
+            }),
+            ptc_allowed: chosen(shares[PTC], 2) == 1,
+            compressor_power_w: self.compressor(command.0[COMPRESSOR]),
+            recirculation: values[RECIRCULATION],
+            blower_level: values[BLOWER],
+            htc_flow_kg_s: values[HTC_FLOW],
+            chiller_flow_kg_s: values[CHILLER_FLOW],
+            requests_w: std::array::from_fn(|i| values[REQUESTS + i]),
+            valves: std::array::from_fn(|i| values[VALVES + i]),
+            cabin_set_point_k: values[CABIN_SET_POINT],
         }
     }
+}
+
+/// Normalised value of a physical one that is `origin` at -1 and `width` more at 1.
+#[inline]
+fn normalised(value: f64, origin: f64, width: f64) -> f32 {
+    (2.0 * (value - origin) / width - 1.0).clamp(-1.0, 1.0) as f32
+}
+
+/// Position of a normalised value between -1 and 1.
+#[inline]
+fn share(normalised: f32) -> f64 {
+    0.5 * (f64::from(normalised).clamp(-1.0, 1.0) + 1.0)
+}
+
+/// Option that a position between 0 and 1 lies in.
+#[inline]
+fn chosen(share: f64, options: usize) -> usize {
+    ((share * options as f64) as usize).min(options - 1)
 }

@@ -1,7 +1,7 @@
 //! The vehicle: one entry, [`Plant::step`], pure and deterministic.
 
-use crate::circuits::assembly::{Assembly, LinkConditions, RECOVERY_APPROACH_K};
-use crate::circuits::branches::{self, BRANCH_COUNT, Branch, BranchFlows, BranchTemperatures};
+use crate::circuits::assembly::{Assembly, LinkConditions, NODES, RECOVERY_APPROACH_K};
+use crate::circuits::branches::{BRANCH_COUNT, Branch};
 use crate::circuits::refrigeration_cycle::RefrigerationCycle;
 use crate::circuits::refrigeration_loop::{
     CompressorAllowance, Limit, LoopBoundary, LoopResult, RefrigerationState, SupplyLimit,
@@ -13,11 +13,11 @@ use crate::config::library::{self, Kind, Override};
 use crate::config::scenario::InitialParameters;
 use crate::config::vehicle::VehicleParameters;
 use crate::control::pid::{IncrementalPid, ResetPid};
-use crate::control::thermal_switch;
+use crate::control::vehicle_controls::{ControlGains, Period};
 use crate::error::PlantResult;
 use crate::flows::{Flow, Flows};
 use crate::ledger::{self, LedgerEntry, StoredEnergyChange};
-use crate::media::air::{self, AirProperties};
+use crate::media::air::AirTable;
 use crate::media::refrigerant::RefrigerantTable;
 use crate::numerics::thermal_network::{MAXIMUM_NODES, NodeValues};
 use crate::state::State;
@@ -25,9 +25,6 @@ use serde::{Deserialize, Serialize};
 
 /// Period of all controllers and of a plant step [s].
 pub const CONTROL_PERIOD_S: f64 = 1.0;
-
-/// Pascal in a bar.
-const PASCAL_PER_BAR: f64 = 1e5;
 
 /// What the surroundings do during a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,6 +84,8 @@ pub struct Plant {
     pub refrigeration: RefrigerationCycle,
     /// Refrigerant properties.
     pub refrigerant: RefrigerantTable,
+    pub(crate) air: AirTable,
+    pub(crate) gains: ControlGains,
     substeps: u32,
 }
 
@@ -100,19 +99,6 @@ pub enum Stage {
     Heat,
     /// All flows, before the ledger balances them.
     Ledger,
-}
-
-/// What the control layer fixed for one control period.
-struct Period {
-    demand: Demand,
-    ventilation: crate::components::cabin::Ventilation,
-    branches_w_k: [f64; BRANCH_COUNT],
-    htc_rate_w_k: f64,
-    chiller_rate_w_k: f64,
-    pumps_w: [f64; 2],
-    ptc_demand_w: f64,
-    compressor_demand_w: f64,
-    air: AirProperties,
 }
 
 impl Plant {
@@ -129,6 +115,8 @@ impl Plant {
             refrigeration: RefrigerationCycle::new(vehicle.refrigeration.clone(), table.clone())
                 .map_err(|violation| violation.within("refrigeration").in_file("vehicle"))?,
             refrigerant: table,
+            air: AirTable::default(),
+            gains: ControlGains::of(&vehicle),
             vehicle,
             substeps: 1,
         })
@@ -153,7 +141,7 @@ impl Plant {
     #[must_use]
     pub fn parked(&self, initial: &InitialParameters) -> State {
         let soak_k = initial.soak_temperature_degc.kelvin();
-        let nodes = &self.assembly.nodes;
+        let nodes = NODES;
         let mut temperatures_k = [0.0; MAXIMUM_NODES];
         temperatures_k[..self.assembly.network.nodes()].fill(soak_k);
         if let Some(cabin) = initial.cabin_temperature_degc {
@@ -232,119 +220,9 @@ impl Plant {
         state.ptc_power_w = record.flows[Flow::Ptc];
         state.compressor_power_w = record.flows[Flow::Compressor];
         state.condenser_heat_flow_w = record.flows[Flow::Condenser];
-        state.ptc_pid.applied(&self.vehicle.ptc.pid, state.ptc_power_w, CONTROL_PERIOD_S);
-        state.pressure_pid.applied(
-            &self.vehicle.controls.pressure_pid,
-            state.compressor_power_w,
-            CONTROL_PERIOD_S,
-        );
+        state.ptc_pid.applied(&self.gains.ptc, state.ptc_power_w);
+        state.pressure_pid.applied(&self.gains.pressure, state.compressor_power_w);
         record
-    }
-
-    /// Temperatures that decide about connections.
-    #[must_use]
-    pub fn branch_temperatures(
-        &self,
-        state: &State,
-        recirculation: f64,
-        ambient_k: f64,
-    ) -> BranchTemperatures {
-        let nodes = &self.assembly.nodes;
-        let at = |node: crate::numerics::thermal_network::Node| state.temperatures_k[node.index()];
-        let htc_rate_w_k = state.htc_pump.flow_kg_s * self.vehicle.htc.circuit.coolant_specific_heat_j_kg_k;
-        BranchTemperatures {
-            htc_supply_k: at(nodes.htc_supply),
-            condenser_outlet_k: at(nodes.htc_return) + state.condenser_heat_flow_w / htc_rate_w_k,
-            chiller_supply_k: at(nodes.chiller_supply),
-            battery_k: at(nodes.battery),
-            motor_k: at(nodes.motor),
-            transmission_k: at(nodes.transmission),
-            thermal_battery_k: at(nodes.thermal_battery),
-            core_inlet_k: (1.0 - recirculation) * ambient_k + recirculation * at(nodes.cabin),
-            ambient_k,
-        }
-    }
-
-    /// The plant's own controls, once a control period: connections, pumps, switches, PTC, pressure.
-    fn begin_period(&self, state: &mut State, demand: Demand, disturbance: &Disturbance) -> Period {
-        let vehicle = &self.vehicle;
-        let speed_m_s = 0.5 * (disturbance.start_speed_m_s + disturbance.end_speed_m_s);
-        let ventilation =
-            vehicle.cabin.ventilation(demand.blower_level, demand.recirculation, disturbance.occupants);
-        let temperatures = self.branch_temperatures(state, ventilation.recirculation, disturbance.ambient_k);
-        state.connected = branches::grant(vehicle, &demand.connections, &temperatures, &state.connected);
-        vehicle.htc.circuit.pump.follow(&mut state.htc_pump, demand.htc_flow_kg_s, CONTROL_PERIOD_S);
-        vehicle.chiller.circuit.pump.follow(
-            &mut state.chiller_pump,
-            demand.chiller_flow_kg_s,
-            CONTROL_PERIOD_S,
-        );
-        let flows = BranchFlows {
-            htc_rate_w_k: state.htc_pump.flow_kg_s * vehicle.htc.circuit.coolant_specific_heat_j_kg_k,
-            chiller_rate_w_k: state.chiller_pump.flow_kg_s
-                * vehicle.chiller.circuit.coolant_specific_heat_j_kg_k,
-            ventilation,
-            speed_m_s,
-        };
-        let largest = branches::largest_conductances_w_k(vehicle, &demand, &flows, &state.connected);
-        let mut branches_w_k = [0.0; BRANCH_COUNT];
-        for (i, branch) in Branch::ALL.into_iter().enumerate() {
-            branches_w_k[i] = largest[i]
-                * thermal_switch::track(
-                    &mut state.switches[i],
-                    &vehicle.controls.thermal_switch.pid,
-                    demand.requests_w[branch.member() as usize],
-                    largest[i],
-                    temperatures.difference_k(branch),
-                    CONTROL_PERIOD_S,
-                );
-        }
-        let (inlet_k, coolant_k) = (temperatures.core_inlet_k, temperatures.chiller_supply_k);
-        let cooling_core_w_k = &mut branches_w_k[Branch::CabinChiller as usize];
-        *cooling_core_w_k = cooling_core_w_k.min(vehicle.cabin.cooling_core_without_ice_w_k(
-            &flows.ventilation,
-            inlet_k,
-            coolant_k,
-        ));
-        Period {
-            demand,
-            ventilation: flows.ventilation,
-            branches_w_k,
-            htc_rate_w_k: flows.htc_rate_w_k,
-            chiller_rate_w_k: flows.chiller_rate_w_k,
-            pumps_w: [
-                vehicle.htc.circuit.pump.power_w(state.htc_pump.flow_kg_s),
-                vehicle.chiller.circuit.pump.power_w(state.chiller_pump.flow_kg_s),
-            ],
-            ptc_demand_w: self.ptc_demand_w(state, &demand),
-            compressor_demand_w: self.compressor_demand_w(state, &demand),
-            air: air::at_temperature(disturbance.ambient_k),
-        }
-    }
-
-    /// PTC power that its PID on the cabin temperature asks for.
-    fn ptc_demand_w(&self, state: &mut State, demand: &Demand) -> f64 {
-        let ptc = &self.vehicle.ptc;
-        if !demand.ptc_allowed {
-            state.ptc_pid.clear();
-            return 0.0;
-        }
-        let error_k = demand.cabin_set_point_k - state.temperatures_k[self.assembly.nodes.cabin.index()];
-        state.ptc_pid.output(&ptc.pid, error_k, CONTROL_PERIOD_S, 0.0, ptc.maximum_power_w)
-    }
-
-    /// Smaller of the controller's demand and that of `PID_pressureControl` (paper section 2.3).
-    fn compressor_demand_w(&self, state: &mut State, demand: &Demand) -> f64 {
-        let refrigeration = &self.vehicle.refrigeration;
-        let error_bar = refrigeration.maximum_pressure_bar - state.condensing_pressure_pa / PASCAL_PER_BAR;
-        let pressure_w = state.pressure_pid.output(
-            &self.vehicle.controls.pressure_pid,
-            error_bar,
-            CONTROL_PERIOD_S,
-            0.0,
-            refrigeration.compressor.maximum_power_w,
-        );
-        demand.compressor_power_w.min(pressure_w)
     }
 
     /// One integration step: traction demand, refrigerant loop, thermal loads, regeneration and battery,
@@ -358,7 +236,7 @@ impl Plant {
         tamper: &mut impl FnMut(Stage, &mut Flows),
     ) -> StepRecord {
         let vehicle = &self.vehicle;
-        let nodes = &self.assembly.nodes;
+        let nodes = NODES;
         let step_s = CONTROL_PERIOD_S / f64::from(self.substeps);
         let acceleration = (disturbance.end_speed_m_s - disturbance.start_speed_m_s) / CONTROL_PERIOD_S;
         let start_m_s = disturbance.start_speed_m_s + acceleration * step_s * f64::from(part);
@@ -469,8 +347,7 @@ impl Plant {
         tamper(Stage::Ledger, &mut flows);
         let stored = StoredEnergyChange {
             kinetic_j: vehicle.body.kinetic_energy_j(end_m_s) - vehicle.body.kinetic_energy_j(start_m_s),
-            chemical_j: self.battery.chemical_energy_j(&battery.state)
-                - self.battery.chemical_energy_j(&state.battery),
+            chemical_j: circuit.chemical_energy_gained_j(&battery.state),
             polarisation_j: self.battery.polarisation_energy_j(&battery.state)
                 - self.battery.polarisation_energy_j(&state.battery),
             heat_j: self.assembly.network.heat_gained_j(&start_k, &end_k),
@@ -510,7 +387,7 @@ impl Plant {
         disturbance: &Disturbance,
         speed_m_s: f64,
     ) -> LinkConditions {
-        let nodes = &self.assembly.nodes;
+        let nodes = NODES;
         let cabin_k = state.temperatures_k[nodes.cabin.index()];
         let lowest_k = state.temperatures_k[nodes.chiller_supply.index()] + RECOVERY_APPROACH_K;
         let recovers = period.branches_w_k[Branch::CabinHtc as usize] > 0.0
@@ -536,7 +413,7 @@ impl Plant {
 
     /// Heat that flows bring into the nodes [W].
     fn heat_sources(&self, flows: &Flows, conditions: &LinkConditions) -> NodeValues {
-        let nodes = &self.assembly.nodes;
+        let nodes = NODES;
         let mut sources = self.assembly.condenser_sources(flows[Flow::Condenser], conditions);
         sources[nodes.htc_supply.index()] += flows[Flow::Ptc];
         sources[nodes.htc_return.index()] += flows[Flow::HtcPump];

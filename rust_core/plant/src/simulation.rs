@@ -139,13 +139,7 @@ impl Experiment {
     #[must_use]
     pub fn start(&self) -> Run {
         let state = self.plant.parked(&self.initial);
-        Run {
-            memory: self.hpcu.awake(&self.plant, &state),
-            state,
-            steps: 0,
-            record: None,
-            summary: Summary::default(),
-        }
+        Run { memory: self.hpcu.awake(&state), state, steps: 0, record: None, summary: Summary::default() }
     }
 
     /// What the surroundings do during a step.

@@ -4,9 +4,7 @@ use super::branches::{BRANCH_COUNT, Branch};
 use crate::components::cabin::Ventilation;
 use crate::config::vehicle::VehicleParameters;
 use crate::flows::{Flow, Flows};
-use crate::numerics::thermal_network::{
-    LinkPorts, LinkState, MAXIMUM_LINKS, NetworkBuilder, Node, NodeValues, ThermalNetwork,
-};
+use crate::numerics::thermal_network::{LinkPorts, LinkState, Node, NodeValues, ThermalNetwork, Topology};
 
 /// Heat capacities of the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,112 +61,183 @@ pub struct LinkConditions {
 /// Smallest temperature difference that the exhaust recovery leaves to the chiller supply [K] (assumed).
 pub const RECOVERY_APPROACH_K: f64 = 1.0;
 
-/// Assembled network with its nodes and the flow that each link carries.
+/// The vehicle's nodes.
+pub const NODES: Nodes = Nodes {
+    htc_supply: Node::new(0),
+    htc_return: Node::new(1),
+    chiller_supply: Node::new(2),
+    chiller_return: Node::new(3),
+    battery: Node::new(4),
+    motor: Node::new(5),
+    transmission: Node::new(6),
+    cabin: Node::new(7),
+    exhaust: Node::new(8),
+    soft: Node::new(9),
+    hard: Node::new(10),
+    thermal_battery: Node::new(11),
+};
+
+/// Nodes and links of the vehicle.
+#[derive(Debug)]
+pub struct VehicleTopology;
+
+/// Exhaust recovery: the exhaust enters at cabin temperature and meets whichever is warmer, ambient (only heat above
+/// ambient is "exhaust heat") or the chiller supply.
+const RECOVERY_FROM_AMBIENT: LinkPorts = LinkPorts {
+    loses: Some(NODES.exhaust),
+    gains: Some(NODES.chiller_return),
+    hot: Some(NODES.cabin),
+    cold: None,
+};
+
+impl Topology for VehicleTopology {
+    const NODES: usize = 12;
+
+    // The order is that of `Assembly::links` and of `LINK_FLOWS`.
+    const LINKS: &'static [LinkPorts] = &[
+        LinkPorts::between(NODES.htc_supply, NODES.htc_return),
+        LinkPorts::between(NODES.chiller_supply, NODES.chiller_return),
+        LinkPorts::to_surroundings(NODES.htc_supply),
+        LinkPorts::to_surroundings(NODES.htc_return),
+        LinkPorts::to_surroundings(NODES.chiller_supply),
+        LinkPorts::to_surroundings(NODES.chiller_return),
+        branch_ports(Branch::CabinHtc),
+        branch_ports(Branch::BatteryHtc),
+        branch_ports(Branch::AmbientHtc),
+        branch_ports(Branch::MotorChiller),
+        branch_ports(Branch::TransmissionChiller),
+        branch_ports(Branch::BatteryChiller),
+        branch_ports(Branch::AmbientChiller),
+        branch_ports(Branch::CabinChiller),
+        branch_ports(Branch::ThermalBatteryHtc),
+        branch_ports(Branch::ThermalBatteryChiller),
+        RECOVERY_FROM_AMBIENT,
+        LinkPorts { cold: Some(NODES.chiller_supply), ..RECOVERY_FROM_AMBIENT },
+        LinkPorts::to_surroundings(NODES.battery),
+        LinkPorts::to_surroundings(NODES.motor),
+        LinkPorts::to_surroundings(NODES.transmission),
+        LinkPorts::to_surroundings(NODES.thermal_battery),
+        LinkPorts::to_surroundings(NODES.cabin),
+        LinkPorts::between(NODES.cabin, NODES.soft),
+        LinkPorts::between(NODES.cabin, NODES.hard),
+        LinkPorts { gains: Some(NODES.exhaust), ..LinkPorts::to_surroundings(NODES.cabin) },
+        LinkPorts::to_surroundings(NODES.exhaust),
+    ];
+
+    // The refrigerant loop asks for the supplies before the step is solved.
+    const KNOWN_FIRST: &'static [Node] = &[NODES.chiller_supply, NODES.htc_supply];
+}
+
+/// Flow that each link carries.
+const LINK_FLOWS: [Flow; VehicleTopology::LINKS.len()] = [
+    Flow::HtcAdvection,
+    Flow::ChillerAdvection,
+    Flow::HtcSupplyHose,
+    Flow::HtcReturnHose,
+    Flow::ChillerSupplyHose,
+    Flow::ChillerReturnHose,
+    branch_flow(Branch::CabinHtc),
+    branch_flow(Branch::BatteryHtc),
+    branch_flow(Branch::AmbientHtc),
+    branch_flow(Branch::MotorChiller),
+    branch_flow(Branch::TransmissionChiller),
+    branch_flow(Branch::BatteryChiller),
+    branch_flow(Branch::AmbientChiller),
+    branch_flow(Branch::CabinChiller),
+    branch_flow(Branch::ThermalBatteryHtc),
+    branch_flow(Branch::ThermalBatteryChiller),
+    Flow::ExhaustRecovery,
+    Flow::ExhaustRecovery,
+    Flow::BatteryAmbient,
+    Flow::MotorAmbient,
+    Flow::TransmissionAmbient,
+    Flow::ThermalBatteryAmbient,
+    Flow::PanelAmbient,
+    Flow::Soft,
+    Flow::Hard,
+    Flow::CabinExhaust,
+    Flow::ExhaustAmbient,
+];
+
+/// Position of the first of the two recovery links.
+const RECOVERY_LINK: usize = 16;
+
+/// State of each link, in the order of [`VehicleTopology`].
+pub type LinkStates = [LinkState; VehicleTopology::LINKS.len()];
+
+/// Network of a vehicle.
 #[derive(Debug, Clone)]
 pub struct Assembly {
     /// Network.
-    pub network: ThermalNetwork,
-    /// Nodes.
+    pub network: ThermalNetwork<VehicleTopology>,
+    /// Nodes, the same in every vehicle.
     pub nodes: Nodes,
-    link_flows: Vec<Flow>,
-    recovery_from_chiller: usize,
 }
 
 impl Assembly {
     /// Assembles a vehicle.
     #[must_use]
     pub fn of(vehicle: &VehicleParameters) -> Self {
-        let mut builder = NetworkBuilder::default();
-        let nodes = Self::declare_nodes(&mut builder, vehicle);
-        let mut link_flows = Vec::new();
-        let mut link = |flow: Flow, ports: LinkPorts| {
-            link_flows.push(flow);
-            builder.link(ports)
-        };
-        let outside = LinkPorts::to_surroundings;
-        link(Flow::HtcAdvection, LinkPorts::between(nodes.htc_supply, nodes.htc_return));
-        link(Flow::ChillerAdvection, LinkPorts::between(nodes.chiller_supply, nodes.chiller_return));
-        link(Flow::HtcSupplyHose, outside(nodes.htc_supply));
-        link(Flow::HtcReturnHose, outside(nodes.htc_return));
-        link(Flow::ChillerSupplyHose, outside(nodes.chiller_supply));
-        link(Flow::ChillerReturnHose, outside(nodes.chiller_return));
-        for branch in Branch::ALL {
-            link(branch_flow(branch), branch_ports(branch, &nodes));
-        }
-        // Exhaust recovery: the exhaust enters at cabin temperature and meets whichever is warmer, ambient
-        // (only heat above ambient is "exhaust heat") or the chiller supply.
-        let recovery = LinkPorts {
-            loses: Some(nodes.exhaust),
-            gains: Some(nodes.chiller_return),
-            hot: Some(nodes.cabin),
-            cold: None,
-        };
-        link(Flow::ExhaustRecovery, recovery);
-        let recovery_from_chiller =
-            link(Flow::ExhaustRecovery, LinkPorts { cold: Some(nodes.chiller_supply), ..recovery });
-        link(Flow::BatteryAmbient, outside(nodes.battery));
-        link(Flow::MotorAmbient, outside(nodes.motor));
-        link(Flow::TransmissionAmbient, outside(nodes.transmission));
-        link(Flow::ThermalBatteryAmbient, outside(nodes.thermal_battery));
-        link(Flow::PanelAmbient, outside(nodes.cabin));
-        link(Flow::Soft, LinkPorts::between(nodes.cabin, nodes.soft));
-        link(Flow::Hard, LinkPorts::between(nodes.cabin, nodes.hard));
-        link(Flow::CabinExhaust, LinkPorts { gains: Some(nodes.exhaust), ..outside(nodes.cabin) });
-        link(Flow::ExhaustAmbient, outside(nodes.exhaust));
-        Self { network: builder.build(), nodes, link_flows, recovery_from_chiller }
-    }
-
-    fn declare_nodes(builder: &mut NetworkBuilder, vehicle: &VehicleParameters) -> Nodes {
         let half_htc_j_k = 0.5 * vehicle.htc.circuit.heat_capacity_j_k;
         let half_chiller_j_k = 0.5 * vehicle.chiller.circuit.heat_capacity_j_k;
-        Nodes {
-            htc_supply: builder.node(half_htc_j_k),
-            htc_return: builder.node(half_htc_j_k),
-            chiller_supply: builder.node(half_chiller_j_k),
-            chiller_return: builder.node(half_chiller_j_k),
-            battery: builder.node(vehicle.battery.heat_capacity_j_k()),
-            motor: builder.node(vehicle.motor.heat_capacity_j_k),
-            transmission: builder.node(vehicle.transmission.heat_capacity_j_k),
-            cabin: builder.node(vehicle.cabin.air_heat_capacity_j_k),
-            exhaust: builder.node(vehicle.cabin.exhaust_heat_capacity_j_k),
-            soft: builder.node(vehicle.cabin.soft_heat_capacity_j_k),
-            hard: builder.node(vehicle.cabin.hard_heat_capacity_j_k),
-            thermal_battery: builder.node(vehicle.thermal_battery.heat_capacity_j_k),
+        let mut capacities_j_k = NodeValues::default();
+        for (node, capacity_j_k) in [
+            (NODES.htc_supply, half_htc_j_k),
+            (NODES.htc_return, half_htc_j_k),
+            (NODES.chiller_supply, half_chiller_j_k),
+            (NODES.chiller_return, half_chiller_j_k),
+            (NODES.battery, vehicle.battery.heat_capacity_j_k()),
+            (NODES.motor, vehicle.motor.heat_capacity_j_k),
+            (NODES.transmission, vehicle.transmission.heat_capacity_j_k),
+            (NODES.cabin, vehicle.cabin.air_heat_capacity_j_k),
+            (NODES.exhaust, vehicle.cabin.exhaust_heat_capacity_j_k),
+            (NODES.soft, vehicle.cabin.soft_heat_capacity_j_k),
+            (NODES.hard, vehicle.cabin.hard_heat_capacity_j_k),
+            (NODES.thermal_battery, vehicle.thermal_battery.heat_capacity_j_k),
+        ] {
+            capacities_j_k[node.index()] = capacity_j_k;
         }
+        Self { network: ThermalNetwork::new(capacities_j_k), nodes: NODES }
     }
 
-    /// Link states of a step, in the order of the links.
+    /// Link states of a step, in the order of [`VehicleTopology`].
     #[must_use]
-    pub fn links(&self, vehicle: &VehicleParameters, now: &LinkConditions) -> [LinkState; MAXIMUM_LINKS] {
+    #[inline]
+    pub fn links(&self, vehicle: &VehicleParameters, now: &LinkConditions) -> LinkStates {
         let ambient = |conductance_w_k: f64| LinkState::to_fixed(conductance_w_k, now.ambient_k);
-        let mut links = [LinkState::OPEN; MAXIMUM_LINKS];
-        let mut next = 0;
-        let mut put = |state: LinkState| {
-            links[next] = state;
-            next += 1;
-        };
-        put(LinkState::conductance(now.htc_rate_w_k));
-        put(LinkState::conductance(now.chiller_rate_w_k));
-        for circuit in [&vehicle.htc.circuit, &vehicle.chiller.circuit] {
-            put(ambient(0.5 * circuit.hose_conductance_w_k));
-            put(ambient(0.5 * circuit.hose_conductance_w_k));
-        }
-        for branch in Branch::ALL {
-            put(branch_state(branch, now));
-        }
-        let (to_ambient, to_chiller) = recovery_states(now);
-        put(to_ambient);
-        put(to_chiller);
-        put(ambient(now.battery_ambient_w_k));
-        put(ambient(vehicle.motor.ambient_conductance_w_k(now.speed_m_s)));
-        put(ambient(vehicle.transmission.ambient_conductance_w_k(now.speed_m_s)));
-        put(ambient(vehicle.thermal_battery.ambient_conductance_w_k));
-        put(ambient(vehicle.cabin.panel_conductance_w_k(now.speed_m_s)));
-        put(LinkState::conductance(vehicle.cabin.soft_conductance_w_k));
-        put(LinkState::conductance(vehicle.cabin.hard_conductance_w_k));
-        put(ambient(now.ventilation.fresh_rate_w_k));
-        put(ambient(now.ventilation.fresh_rate_w_k));
-        links
+        let branch = |branch: Branch| branch_state(branch, now);
+        let half_hose = [&vehicle.htc.circuit, &vehicle.chiller.circuit]
+            .map(|circuit| ambient(0.5 * circuit.hose_conductance_w_k));
+        let (recovery_from_ambient, recovery_from_chiller) = recovery_states(now);
+        [
+            LinkState::conductance(now.htc_rate_w_k),
+            LinkState::conductance(now.chiller_rate_w_k),
+            half_hose[0],
+            half_hose[0],
+            half_hose[1],
+            half_hose[1],
+            branch(Branch::CabinHtc),
+            branch(Branch::BatteryHtc),
+            branch(Branch::AmbientHtc),
+            branch(Branch::MotorChiller),
+            branch(Branch::TransmissionChiller),
+            branch(Branch::BatteryChiller),
+            branch(Branch::AmbientChiller),
+            branch(Branch::CabinChiller),
+            branch(Branch::ThermalBatteryHtc),
+            branch(Branch::ThermalBatteryChiller),
+            recovery_from_ambient,
+            recovery_from_chiller,
+            ambient(now.battery_ambient_w_k),
+            ambient(vehicle.motor.ambient_conductance_w_k(now.speed_m_s)),
+            ambient(vehicle.transmission.ambient_conductance_w_k(now.speed_m_s)),
+            ambient(vehicle.thermal_battery.ambient_conductance_w_k),
+            ambient(vehicle.cabin.panel_conductance_w_k(now.speed_m_s)),
+            LinkState::conductance(vehicle.cabin.soft_conductance_w_k),
+            LinkState::conductance(vehicle.cabin.hard_conductance_w_k),
+            ambient(now.ventilation.fresh_rate_w_k),
+            ambient(now.ventilation.fresh_rate_w_k),
+        ]
     }
 
     /// Heat sources of the condenser [W].
@@ -179,8 +248,8 @@ impl Assembly {
     pub fn condenser_sources(&self, condenser_heat_w: f64, now: &LinkConditions) -> NodeValues {
         let mut sources = NodeValues::default();
         let through = Self::thermal_battery_share(now);
-        sources[self.nodes.htc_supply.index()] = condenser_heat_w * (1.0 - through);
-        sources[self.nodes.thermal_battery.index()] = condenser_heat_w * through;
+        sources[NODES.htc_supply.index()] = condenser_heat_w * (1.0 - through);
+        sources[NODES.thermal_battery.index()] = condenser_heat_w * through;
         sources
     }
 
@@ -192,25 +261,23 @@ impl Assembly {
     /// Enters the heat flows of all links at the end of a step.
     pub fn record_flows(
         &self,
-        links: &[LinkState; MAXIMUM_LINKS],
+        links: &LinkStates,
         now: &LinkConditions,
         temperatures_k: &NodeValues,
         flows: &mut Flows,
     ) {
-        let mut values = [0.0; MAXIMUM_LINKS];
-        self.network.link_flows(links, temperatures_k, &mut values);
-        for (&flow, value) in self.link_flows.iter().zip(values) {
+        let values = self.network.link_flows(links, temperatures_k);
+        for (&flow, value) in LINK_FLOWS.iter().zip(values) {
             flows[flow] = value;
         }
         flows[Flow::ThermalBatteryHtc] -= flows[Flow::Condenser] * Self::thermal_battery_share(now);
-        flows[Flow::ExhaustRecovery] =
-            values[self.recovery_from_chiller] + values[self.recovery_from_chiller - 1];
+        flows[Flow::ExhaustRecovery] = values[RECOVERY_LINK] + values[RECOVERY_LINK + 1];
     }
 }
 
 /// Flow that a branch carries.
 #[must_use]
-pub fn branch_flow(branch: Branch) -> Flow {
+pub const fn branch_flow(branch: Branch) -> Flow {
     match branch {
         Branch::CabinHtc => Flow::CabinHtc,
         Branch::BatteryHtc => Flow::BatteryHtc,
@@ -226,38 +293,40 @@ pub fn branch_flow(branch: Branch) -> Flow {
 }
 
 /// Supply temperature drives a branch, the return takes or gives the heat.
-fn branch_ports(branch: Branch, nodes: &Nodes) -> LinkPorts {
-    let heated = |member: Option<Node>| LinkPorts {
-        loses: Some(nodes.htc_return),
-        gains: member,
-        hot: Some(nodes.htc_supply),
-        cold: member,
-    };
-    let cooled = |member: Option<Node>| LinkPorts {
-        loses: member,
-        gains: Some(nodes.chiller_return),
-        hot: member,
-        cold: Some(nodes.chiller_supply),
-    };
+const fn branch_ports(branch: Branch) -> LinkPorts {
     match branch {
-        Branch::CabinHtc => heated(Some(nodes.cabin)),
-        Branch::BatteryHtc => heated(Some(nodes.battery)),
+        Branch::CabinHtc => heated(Some(NODES.cabin)),
+        Branch::BatteryHtc => heated(Some(NODES.battery)),
         Branch::AmbientHtc => heated(None),
-        Branch::MotorChiller => cooled(Some(nodes.motor)),
-        Branch::TransmissionChiller => cooled(Some(nodes.transmission)),
-        Branch::BatteryChiller => cooled(Some(nodes.battery)),
+        Branch::MotorChiller => cooled(Some(NODES.motor)),
+        Branch::TransmissionChiller => cooled(Some(NODES.transmission)),
+        Branch::BatteryChiller => cooled(Some(NODES.battery)),
         Branch::AmbientChiller => cooled(None),
-        Branch::CabinChiller => cooled(Some(nodes.cabin)),
+        Branch::CabinChiller => cooled(Some(NODES.cabin)),
         Branch::ThermalBatteryHtc => LinkPorts {
-            loses: Some(nodes.thermal_battery),
-            gains: Some(nodes.htc_supply),
-            hot: Some(nodes.thermal_battery),
-            cold: Some(nodes.htc_return),
+            loses: Some(NODES.thermal_battery),
+            gains: Some(NODES.htc_supply),
+            hot: Some(NODES.thermal_battery),
+            cold: Some(NODES.htc_return),
         },
-        Branch::ThermalBatteryChiller => cooled(Some(nodes.thermal_battery)),
+        Branch::ThermalBatteryChiller => cooled(Some(NODES.thermal_battery)),
     }
 }
 
+const fn heated(member: Option<Node>) -> LinkPorts {
+    LinkPorts { loses: Some(NODES.htc_return), gains: member, hot: Some(NODES.htc_supply), cold: member }
+}
+
+const fn cooled(member: Option<Node>) -> LinkPorts {
+    LinkPorts {
+        loses: member,
+        gains: Some(NODES.chiller_return),
+        hot: member,
+        cold: Some(NODES.chiller_supply),
+    }
+}
+
+#[inline(always)]
 fn branch_state(branch: Branch, now: &LinkConditions) -> LinkState {
     let conductance_w_k = now.branches_w_k[branch as usize];
     let recirculation = now.ventilation.recirculation;

@@ -122,15 +122,19 @@ impl RefrigerationCycle {
     }
 
     /// All quantities of the cycle and both balances.
-    #[inline]
+    ///
+    /// What depends on one saturation temperature alone is evaluated with that one derivative.
+    #[inline(always)]
     pub(super) fn evaluate<T: Real>(&self, sides: &CoolantSides, unknowns: [T; 3]) -> CyclePoint<T> {
         let [evaporating_k, condensing_k, speed_rev_s] = unknowns;
         let parameters = &self.parameters;
-        let superheat_k = approach_limited_k(parameters.superheat_k, -(evaporating_k - sides.cold_inlet_k));
-        let subcooling_k = approach_limited_k(parameters.subcooling_k, condensing_k - sides.hot_inlet_k);
-        let suction = self.table.suction_state(evaporating_k, superheat_k);
-        let isobar = self.table.condensing_isobar(condensing_k);
-        let liquid_enthalpy_j_kg = isobar.liquid_enthalpy_j_kg(subcooling_k);
+        let (evaporating, condensing) = (evaporating_k.alone(), condensing_k.alone());
+        let superheat_k = approach_limited_k(parameters.superheat_k, -(evaporating - sides.cold_inlet_k));
+        let subcooling_k = approach_limited_k(parameters.subcooling_k, condensing - sides.hot_inlet_k);
+        let suction = self.table.suction_state(evaporating, superheat_k).of(evaporating_k);
+        let isobar = self.table.condensing_isobar(condensing);
+        let liquid_enthalpy_j_kg = condensing_k.then(isobar.liquid_enthalpy_j_kg(subcooling_k));
+        let isobar = isobar.of(condensing_k);
 
         let efficiency =
             parameters.compressor.efficiency(isobar.pressure_pa / suction.pressure_pa, speed_rev_s);
@@ -146,8 +150,8 @@ impl RefrigerationCycle {
             evaporating_k,
             condensing_k,
             speed_rev_s,
-            superheat_k,
-            subcooling_k,
+            superheat_k: evaporating_k.then(superheat_k),
+            subcooling_k: condensing_k.then(subcooling_k),
             evaporating_pressure_pa: suction.pressure_pa,
             mass_flow_kg_s,
             suction_enthalpy_j_kg: suction.enthalpy_j_kg,
@@ -163,6 +167,11 @@ impl RefrigerationCycle {
         }
     }
 
+    /// All quantities of the cycle and both balances, without derivatives.
+    pub(super) fn point(&self, sides: &CoolantSides, unknowns: [f64; 3]) -> CyclePoint<f64> {
+        self.evaluate(sides, unknowns)
+    }
+
     /// Gas temperature at the compressor outlet [K].
     pub(super) fn discharge_k<T: Real>(&self, point: &CyclePoint<T>) -> T {
         self.table.discharge_temperature_k(&point.isobar, point.discharge_enthalpy_j_kg)
@@ -170,6 +179,11 @@ impl RefrigerationCycle {
 }
 
 impl<T: Real> CyclePoint<T> {
+    /// Evaporating temperature, condensing temperature and speed.
+    pub fn unknowns(&self) -> [T; 3] {
+        [self.evaporating_k, self.condensing_k, self.speed_rev_s]
+    }
+
     pub fn pressure_ratio(&self) -> f64 {
         self.isobar.pressure_pa.value() / self.evaporating_pressure_pa.value()
     }

@@ -7,14 +7,17 @@ use std::cell::Cell;
 
 use serde::{Deserialize, Serialize};
 
-use super::refrigeration_cycle::{CyclePoint, RefrigerationCycle};
-use super::refrigeration_solver::Solver;
+use super::refrigeration_cycle::RefrigerationCycle;
 pub use super::refrigeration_solver::{Limit, SupplyLimit, WarmStart};
+use super::refrigeration_solver::{Running, Solver};
 use crate::components::compressor::CompressorState;
 use crate::components::refrigerant_exchanger::{CondenserStreams, EvaporatorStreams};
 
 /// Conductance below which a coolant counts as standing still [W/K].
 const LEAST_CONDUCTANCE_W_K: f64 = 1.0;
+
+/// Change in a step [K or rev/s] beyond which a solution jumped, so that the next will not go on the same way.
+const LARGEST_TREND: f64 = 1.0;
 
 /// What the coolants offer during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -126,13 +129,46 @@ pub struct RefrigerationState {
     pub compressor: CompressorState,
     /// Last solution with the machine running.
     pub warm_start: Option<WarmStart>,
+    /// Change of evaporating temperature [K], condensing temperature [K] and speed [rev/s] up to it in one step; 0
+    /// where they jumped.
+    pub trend: [f64; 3],
 }
 
 impl RefrigerationState {
     /// A vehicle that was parked for long.
     #[must_use]
     pub fn parked() -> Self {
-        Self { compressor: CompressorState::parked(), warm_start: None }
+        Self { compressor: CompressorState::parked(), warm_start: None, trend: [0.0; 3] }
+    }
+}
+
+impl RefrigerationState {
+    /// Where the next solution is expected: as far from the last as that was from the one before.
+    fn expected(&self) -> Option<WarmStart> {
+        let [evaporating_k, condensing_k, speed_rev_s] = self.trend;
+        self.warm_start.map(|last| WarmStart {
+            evaporating_k: last.evaporating_k + evaporating_k,
+            condensing_k: last.condensing_k + condensing_k,
+            speed_rev_s: last.speed_rev_s + speed_rev_s,
+            ..last
+        })
+    }
+
+    /// Keeps a solution, if the machine ran, and how it changed.
+    fn remember(&mut self, solution: Option<WarmStart>) {
+        self.trend = match (self.warm_start, solution) {
+            (Some(last), Some(now)) => {
+                let change = [
+                    now.evaporating_k - last.evaporating_k,
+                    now.condensing_k - last.condensing_k,
+                    now.speed_rev_s - last.speed_rev_s,
+                ];
+                let steady = change.iter().all(|part| part.abs() < LARGEST_TREND);
+                if steady { change } else { [0.0; 3] }
+            }
+            _ => [0.0; 3],
+        };
+        self.warm_start = solution.or(self.warm_start);
     }
 }
 
@@ -179,7 +215,7 @@ impl RefrigerationCycle {
                 speed_limit_rev_s: state.compressor.speed_limit_rev_s(parameters, step_s),
                 hold_minimum_speed,
             };
-            self.solve(boundary, &demand, state.warm_start.as_ref())
+            self.solve(boundary, &demand, state.expected().as_ref())
         } else {
             self.at_rest(boundary, LoopStatus::Off, Limit::Power)
         };
@@ -196,7 +232,7 @@ impl RefrigerationCycle {
         result.start_loss_w = state.compressor.advance(parameters, speed_rev_s, forced, step_s);
         result.electric_power_w += result.start_loss_w;
         result.loss_to_ambient_w += result.start_loss_w;
-        state.warm_start = result.warm_start().or(state.warm_start);
+        state.remember(result.warm_start());
         result
     }
 
@@ -236,10 +272,10 @@ impl RefrigerationCycle {
         };
         let mut result = match solver.solve(warm_start) {
             Err(limit) => self.at_rest(boundary, LoopStatus::Off, limit),
-            Ok((point, limit)) if point.pressure_ratio() < parameters.minimum_pressure_ratio => {
-                self.at_rest(boundary, LoopStatus::NoLift, limit)
+            Ok(running) if running.point.pressure_ratio() < parameters.minimum_pressure_ratio => {
+                self.at_rest(boundary, LoopStatus::NoLift, running.limit)
             }
-            Ok((point, limit)) => self.running_result(&point, limit),
+            Ok(running) => self.running_result(&running),
         };
         (result.iterations, result.bracketed) = (solver.iterations.get(), solver.bracketed);
         result
@@ -255,7 +291,7 @@ impl RefrigerationCycle {
         );
         let unknowns =
             [result.evaporating_temperature_k, result.condensing_temperature_k, result.speed_rev_s];
-        let point = self.evaluate(&sides, unknowns);
+        let point = self.point(&sides, unknowns);
         let flow = point.mass_flow_kg_s;
         let (dew, bubble) = (point.isobar.dew_enthalpy_j_kg, point.isobar.liquid_enthalpy_j_kg(0.0));
         let suction_dew = self.table.suction_state(point.evaporating_k, 0.0).enthalpy_j_kg;
@@ -281,7 +317,8 @@ impl RefrigerationCycle {
         [a, b, c, d, e, f, g]
     }
 
-    fn running_result(&self, point: &CyclePoint<f64>, limit: Limit) -> LoopResult {
+    fn running_result(&self, running: &Running) -> LoopResult {
+        let Running { point, limit, discharge_k } = *running;
         LoopResult {
             status: match limit {
                 Limit::Power | Limit::CoolantFlow => LoopStatus::Converged,
@@ -302,7 +339,7 @@ impl RefrigerationCycle {
             electric_power_w: point.electric_w,
             condenser_heat_flow_w: point.condenser_w,
             evaporator_heat_flow_w: point.evaporator_w,
-            discharge_temperature_k: self.discharge_k(point),
+            discharge_temperature_k: discharge_k,
             loss_to_ambient_w: (1.0 - self.parameters.compressor.electrical_efficiency) * point.electric_w,
             start_loss_w: 0.0,
             superheat_k: point.superheat_k,

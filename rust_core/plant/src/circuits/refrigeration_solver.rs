@@ -9,11 +9,14 @@ use std::cell::Cell;
 use serde::{Deserialize, Serialize};
 
 use super::refrigeration_cycle::{CoolantSides, CyclePoint, RefrigerationCycle, variables};
-use crate::numerics::dual::{Dual, Real};
+use crate::numerics::dual::Real;
 use crate::numerics::root::{bracketed_root, maximum};
 
 /// Largest balance error [K] or scaled limit error of a solution.
 const RESIDUAL_TOLERANCE: f64 = 1e-8;
+/// Error below which further steps use the derivatives at hand, as long as each leaves at most a share of the error.
+const CHORD_ERROR: f64 = 0.3;
+const CHORD_SHARE: f64 = 0.03;
 /// How far a limit may be missed, in its scaled unit (1 K, or 1 % of power or speed).
 const LIMIT_TOLERANCE: f64 = 1e-6;
 const MAX_NEWTON_ITERATIONS: u32 = 25;
@@ -92,11 +95,33 @@ pub(super) struct Solver<'a> {
     pub bracketed: bool,
 }
 
-/// A solution, or the limit that keeps the machine off.
-pub(super) type Solution = Result<(CyclePoint<f64>, Limit), Limit>;
+/// The cycle in balance, with what holds the compressor back.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Running {
+    pub point: CyclePoint<f64>,
+    pub limit: Limit,
+    /// Gas temperature at the compressor outlet [K].
+    pub discharge_k: f64,
+}
 
+/// A solution, or the limit that keeps the machine off.
+pub(super) type Solution = Result<Running, Limit>;
+
+/// What closes the equations besides the two balances.
+#[derive(Clone, Copy)]
+enum Closure {
+    /// A limit is met exactly.
+    AtLimit(Limit),
+    /// The speed is given [rev/s].
+    AtSpeed(f64),
+}
+
+#[allow(
+    clippy::large_enum_variant,
+    reason = "a solution stays on the stack; a box would allocate every second"
+)]
 enum Newton {
-    Solved([f64; 3]),
+    Solved(CyclePoint<f64>),
     /// The active limit lies beyond the highest or below the lowest speed.
     Above,
     Below,
@@ -132,6 +157,20 @@ impl Solver<'_> {
             }
             Limit::Discharge => -self.cycle.discharge_k(point) + self.cycle.highest_discharge_k,
         }
+    }
+
+    /// Errors of both balances and of the equation that closes them; 0 at the solution.
+    #[inline]
+    fn errors<T: Real>(&self, closure: Closure, point: &CyclePoint<T>) -> [T; 3] {
+        let third = match closure {
+            Closure::AtLimit(limit) => self.margin(limit, point),
+            Closure::AtSpeed(speed) => (-point.speed_rev_s + speed) / (SCALE_SHARE * speed),
+        };
+        [point.cold_residual_k, point.hot_residual_k, third]
+    }
+
+    fn running(&self, point: CyclePoint<f64>, limit: Limit) -> Running {
+        Running { discharge_k: self.cycle.discharge_k(&point), point, limit }
     }
 
     /// The most exceeded of the limits, with its margin.
@@ -177,7 +216,7 @@ impl Solver<'_> {
     fn active_set(&self, first: Limit, start: [f64; 3]) -> Option<Solution> {
         let (mut active, mut unknowns) = (first, start);
         for _ in 0..8 {
-            unknowns = match self.newton(|point| self.margin(active, point), unknowns) {
+            let point = match self.newton(Closure::AtLimit(active), unknowns) {
                 Newton::Solved(solved) => solved,
                 Newton::Above if active != Limit::Speed => {
                     active = Limit::Speed;
@@ -189,7 +228,7 @@ impl Solver<'_> {
                 }
                 _ => return None,
             };
-            let point = self.cycle.evaluate(&self.sides, unknowns);
+            unknowns = point.unknowns();
             if active == Limit::MinimumSpeed {
                 match self.at_minimum_speed(&point) {
                     Some(verdict) => return Some(verdict),
@@ -207,14 +246,15 @@ impl Solver<'_> {
                 continue;
             }
             let (limit, margin) = self.tightest(&CAPS, &point);
+            let running = self.running(point, active);
             if margin < -LIMIT_TOLERANCE {
                 active = limit;
             } else if active == Limit::Discharge {
-                return self.relieved_by_less_speed(unknowns).then_some(Ok((point, active)));
-            } else if self.margin(Limit::Discharge, &point) < -LIMIT_TOLERANCE {
+                return self.relieved_by_less_speed(unknowns).then_some(Ok(running));
+            } else if running.discharge_k > self.cycle.highest_discharge_k + LIMIT_TOLERANCE {
                 active = Limit::Discharge;
             } else {
-                return Some(Ok((point, active)));
+                return Some(Ok(running));
             }
         }
         None
@@ -233,16 +273,15 @@ impl Solver<'_> {
         } else if self.margin(Limit::Discharge, point) < -LIMIT_TOLERANCE {
             Some(Err(Limit::Discharge))
         } else {
-            Some(Ok((*point, Limit::MinimumSpeed)))
+            Some(Ok(self.running(*point, Limit::MinimumSpeed)))
         }
     }
 
     /// Leakage makes the gas hot at low speed too, so the discharge limit can be met at two speeds; the higher
     /// is wanted, where the margin falls with speed.
     fn relieved_by_less_speed(&self, unknowns: [f64; 3]) -> bool {
-        let point = self.cycle.evaluate(&self.sides, variables(unknowns));
-        let rows = [point.cold_residual_k, point.hot_residual_k, self.margin(Limit::Discharge, &point)];
-        solve_three(rows.map(|row| row.gradient), [0.0, 0.0, 1.0]).is_some_and(|change| change[2] < 0.0)
+        let (_, rows) = self.linearised(Closure::AtLimit(Limit::Discharge), unknowns);
+        Inverse::of(rows).is_some_and(|inverse| inverse.step([0.0, 0.0, -1.0])[2] < 0.0)
     }
 
     /// Start values inside the physical range: warm, or from a guess of the lift.
@@ -254,7 +293,7 @@ impl Solver<'_> {
         let evaporating = self.sides.cold_inlet_k - 5.0;
         let condensing = (self.sides.hot_inlet_k + 8.0).max(evaporating + 10.0);
         let reference = 2.0 * self.minimum_speed();
-        let point = self.cycle.evaluate(&self.sides, [evaporating, condensing, reference]);
+        let point = self.cycle.point(&self.sides, [evaporating, condensing, reference]);
         let speed = reference * self.power_limit_w / point.electric_w;
         self.confine([evaporating, condensing, speed.min(self.speed_limit_rev_s)])
     }
@@ -270,26 +309,28 @@ impl Solver<'_> {
     }
 
     /// Both balances together with a third equation.
-    fn newton(&self, third: impl Fn(&CyclePoint<Dual<3>>) -> Dual<3>, start: [f64; 3]) -> Newton {
+    ///
+    /// Close to the solution the derivatives hardly change: steps with those of an earlier point (chord steps) need
+    /// the equations only, a third of the work.
+    fn newton(&self, closure: Closure, start: [f64; 3]) -> Newton {
         let (low, high) = (0.5 * self.minimum_speed(), 1.5 * self.speed_limit_rev_s);
         let mut unknowns = self.confine(start);
         for _ in 0..MAX_NEWTON_ITERATIONS {
             self.iterations.set(self.iterations.get() + 1);
-            let point = self.cycle.evaluate(&self.sides, variables(unknowns));
-            let residuals = [point.cold_residual_k, point.hot_residual_k, third(&point)];
-            let error = residuals.iter().fold(0.0_f64, |error, residual| error.max(residual.value.abs()));
-            if error < RESIDUAL_TOLERANCE {
-                return Newton::Solved(unknowns);
-            }
-            let Some(step) = solve_three(residuals.map(|r| r.gradient), residuals.map(|r| -r.value)) else {
+            let (errors, rows) = self.linearised(closure, unknowns);
+            let Some(inverse) = Inverse::of(rows) else { return Newton::Failed };
+            let step = inverse.step(errors);
+            if !step.iter().all(|change| change.is_finite()) {
                 return Newton::Failed;
-            };
+            }
             let speed = unknowns[2];
             let fastest = if step[2] > 0.0 { MAX_SPEED_FACTOR - 1.0 } else { 1.0 - 1.0 / MAX_SPEED_FACTOR };
-            let scale = (MAX_TEMPERATURE_STEP_K / step[0].abs())
-                .min(MAX_TEMPERATURE_STEP_K / step[1].abs())
-                .min(fastest * speed / step[2].abs())
-                .min(1.0);
+            let longest = largest([
+                step[0] / MAX_TEMPERATURE_STEP_K,
+                step[1] / MAX_TEMPERATURE_STEP_K,
+                step[2] / (fastest * speed),
+            ]);
+            let scale = if longest > 1.0 { longest.recip() } else { 1.0 };
             let next = self.confine(std::array::from_fn(|k| unknowns[k] + scale * step[k]));
             // Pushed against the end of the speed range twice: the root lies outside.
             if speed == high && next[2] == high {
@@ -299,8 +340,29 @@ impl Solver<'_> {
                 return Newton::Below;
             }
             unknowns = next;
+            let mut error = largest(errors);
+            while error < CHORD_ERROR {
+                let point = self.cycle.point(&self.sides, unknowns);
+                let errors = self.errors(closure, &point);
+                let left = largest(errors);
+                if left < RESIDUAL_TOLERANCE {
+                    return Newton::Solved(point);
+                }
+                if left > CHORD_SHARE * error || left.is_nan() {
+                    break;
+                }
+                let step = inverse.step(errors);
+                unknowns = self.confine(std::array::from_fn(|k| unknowns[k] + step[k]));
+                error = left;
+            }
         }
         Newton::Failed
+    }
+
+    /// Errors of all equations and their derivatives.
+    fn linearised(&self, closure: Closure, unknowns: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
+        let errors = self.errors(closure, &self.cycle.evaluate(&self.sides, variables(unknowns)));
+        (errors.map(|error| error.value), errors.map(|error| error.gradient))
     }
 
     /// Brackets the least margin of all limits over speed.
@@ -324,7 +386,7 @@ impl Solver<'_> {
         let discharge = |speed: f64| self.margin(Limit::Discharge, &at_speed(speed));
         let room = discharge(fastest);
         if room >= -LIMIT_TOLERANCE {
-            return Ok((point, self.tightest(&CAPS, &point).0));
+            return Ok(self.running(point, self.tightest(&CAPS, &point).0));
         }
         let coolest = maximum(discharge, low, fastest);
         let most_room = discharge(coolest);
@@ -332,7 +394,7 @@ impl Solver<'_> {
             return Err(Limit::Discharge);
         }
         let speed = bracketed_root(discharge, (coolest, most_room), (fastest, room), RESIDUAL_TOLERANCE);
-        Ok((at_speed(speed), Limit::Discharge))
+        Ok(self.running(at_speed(speed), Limit::Discharge))
     }
 
     /// Both balances at a fixed speed: Newton or, where it fails, nested bracketing, which cannot miss.
@@ -340,15 +402,12 @@ impl Solver<'_> {
     /// The condenser balance rises with condensing temperature and the evaporator balance falls with evaporating
     /// temperature; both brackets exist because properties are held beyond the table.
     fn at_speed(&self, speed_rev_s: f64, start: [f64; 3]) -> CyclePoint<f64> {
-        let scale = SCALE_SHARE * speed_rev_s;
-        let reached = |point: &CyclePoint<Dual<3>>| (-point.speed_rev_s + speed_rev_s) / scale;
-        if let Newton::Solved([evaporating, condensing, _]) =
-            self.newton(reached, [start[0], start[1], speed_rev_s])
-        {
-            return self.cycle.evaluate(&self.sides, [evaporating, condensing, speed_rev_s]);
+        let start = [start[0], start[1], speed_rev_s];
+        if let Newton::Solved(point) = self.newton(Closure::AtSpeed(speed_rev_s), start) {
+            return point;
         }
         let at = |evaporating: f64, condensing: f64| {
-            self.cycle.evaluate(&self.sides, [evaporating, condensing, speed_rev_s])
+            self.cycle.point(&self.sides, [evaporating, condensing, speed_rev_s])
         };
         let condensing_at = |evaporating: f64| {
             let residual = |condensing: f64| at(evaporating, condensing).hot_residual_k;
@@ -377,18 +436,39 @@ fn expand(from: f64, first_step: f64, function: impl Fn(f64) -> (f64, bool)) -> 
     }
 }
 
-/// Cramer's rule for three equations given by rows; `None` for a singular matrix.
+/// Largest magnitude; not a number where one of them is none.
 #[inline]
-fn solve_three(rows: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]> {
-    let [a, b, c] = rows;
-    let cross = |u: [f64; 3], v: [f64; 3]| {
-        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
-    };
-    let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
-    let determinant = a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2];
-    let inverse = determinant.recip();
-    let solution =
-        std::array::from_fn(|k| (right[0] * bc[k] + right[1] * ca[k] + right[2] * ab[k]) * inverse);
-    let finite = solution.iter().all(|x: &f64| x.is_finite());
-    (determinant != 0.0 && finite).then_some(solution)
+fn largest(values: [f64; 3]) -> f64 {
+    let [a, b, c] = values.map(f64::abs);
+    let pair = if a > b || a.is_nan() { a } else { b };
+    if pair > c || pair.is_nan() { pair } else { c }
+}
+
+/// Inverse of a matrix of three rows, by Cramer's rule.
+struct Inverse {
+    columns: [[f64; 3]; 3],
+    per_determinant: f64,
+}
+
+impl Inverse {
+    /// `None` for a singular matrix.
+    #[inline]
+    fn of(rows: [[f64; 3]; 3]) -> Option<Self> {
+        let [a, b, c] = rows;
+        let cross = |u: [f64; 3], v: [f64; 3]| {
+            [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+        };
+        let columns = [cross(b, c), cross(c, a), cross(a, b)];
+        let determinant = a[0] * columns[0][0] + a[1] * columns[0][1] + a[2] * columns[0][2];
+        (determinant != 0.0).then_some(Self { columns, per_determinant: determinant.recip() })
+    }
+
+    /// The step that makes errors vanish where the equations are straight.
+    #[inline]
+    fn step(&self, errors: [f64; 3]) -> [f64; 3] {
+        let [u, v, w] = self.columns;
+        std::array::from_fn(|k| {
+            -(errors[0] * u[k] + errors[1] * v[k] + errors[2] * w[k]) * self.per_determinant
+        })
+    }
 }

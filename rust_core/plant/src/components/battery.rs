@@ -5,7 +5,7 @@
 
 use crate::config::ZERO_CELSIUS_K;
 use crate::config::battery::{BatteryParameters, RateLimitParameters};
-use crate::numerics::interpolation::{BilinearTable, LinearTable};
+use crate::numerics::interpolation::{BilinearTable, LinearTable, Segment};
 use serde::{Deserialize, Serialize};
 
 /// Rounds of the fixed point for the mean open-circuit voltage; one suffices within a table segment.
@@ -108,6 +108,10 @@ impl Battery {
         let usable = &parameters.usable_capacity;
         let usable_k: Vec<f64> = usable.temperature_degc.iter().map(|t| t + ZERO_CELSIUS_K).collect();
         let cells_in_series = f64::from(parameters.cells_in_series);
+        let open_circuit_voltage = LinearTable::new(
+            &parameters.open_circuit_voltage.state_of_charge,
+            &parameters.open_circuit_voltage.voltage_v,
+        );
         Self {
             cells_in_series,
             strings: f64::from(parameters.strings_in_parallel),
@@ -116,10 +120,7 @@ impl Battery {
             maximum_string_voltage_v: parameters.maximum_cell_voltage_v * cells_in_series,
             charge_limit: parameters.charge_limit.clone(),
             discharge_limit: parameters.discharge_limit.clone(),
-            open_circuit_voltage: LinearTable::new(
-                &parameters.open_circuit_voltage.state_of_charge,
-                &parameters.open_circuit_voltage.voltage_v,
-            ),
+            open_circuit_voltage,
             circuit: BilinearTable::new(
                 &temperatures,
                 &circuit.state_of_charge,
@@ -150,14 +151,6 @@ impl Battery {
         initial - drawn / (self.cell_capacity_c * self.usable_capacity.at(temperature_k))
     }
 
-    /// Chemical energy relative to a full battery [J].
-    #[must_use]
-    pub fn chemical_energy_j(&self, state: &BatteryState) -> f64 {
-        let below_full = self.open_circuit_voltage.integral_to(1.0)
-            - self.open_circuit_voltage.integral_to(self.state_of_charge(state));
-        -below_full * self.cell_capacity_c * self.cells_in_series * self.strings
-    }
-
     /// Energy stored in all RC pairs [J].
     #[must_use]
     pub fn polarisation_energy_j(&self, state: &BatteryState) -> f64 {
@@ -173,15 +166,16 @@ impl Battery {
         let polarisation_ohm = r1 * self.cells_in_series;
         let root_capacitance = (time_constant_s / (r1 * self.cells_in_series)).sqrt();
         let decay = (-step_s / time_constant_s).exp();
-        let (cell_v, slope) = self.open_circuit_voltage.with_slope(soc);
+        let segment = self.open_circuit_voltage.segment(soc);
         CircuitStep {
             battery: self,
             state: *state,
             temperature_k,
             step_s,
-            open_circuit_v: cell_v * self.cells_in_series,
+            segment,
+            open_circuit_v: segment.at(soc) * self.cells_in_series,
             // Fall of the mean open-circuit voltage per ampere.
-            discharge_ohm: 0.5 * slope * step_s / self.cell_capacity_c * self.cells_in_series,
+            discharge_ohm: 0.5 * segment.slope * step_s / self.cell_capacity_c * self.cells_in_series,
             series_ohm,
             polarisation_ohm,
             root_capacitance,
@@ -199,6 +193,8 @@ pub struct CircuitStep<'a> {
     state: BatteryState,
     temperature_k: f64,
     step_s: f64,
+    /// Piece of the open-circuit voltage that the step begins on.
+    segment: &'a Segment,
     open_circuit_v: f64,
     discharge_ohm: f64,
     series_ohm: f64,
@@ -272,15 +268,32 @@ impl CircuitStep<'_> {
         if change.abs() < 1e-9 {
             return self.open_circuit_v - self.discharge_ohm * current_a;
         }
-        let (start_v, slope) = battery.open_circuit_voltage.with_slope(start);
-        let (end_v, end_slope) = battery.open_circuit_voltage.with_slope(start + change);
-        let mean = if slope == end_slope {
-            0.5 * (start_v + end_v)
+        let end = start + change;
+        let mean = if self.segment.holds(end) {
+            0.5 * (self.segment.at(start) + self.segment.at(end))
         } else {
-            let table = &battery.open_circuit_voltage;
-            (table.integral_to(start + change) - table.integral_to(start)) / change
+            (self.piece(end).integral_to(end) - self.segment.integral_to(start)) / change
         };
         mean * battery.cells_in_series
+    }
+
+    /// Chemical energy that all cells gained up to a later state [J]: the open-circuit voltage summed over the charge.
+    #[must_use]
+    pub fn chemical_energy_gained_j(&self, later: &BatteryState) -> f64 {
+        let battery = self.battery;
+        let (start, end) = (battery.state_of_charge(&self.state), battery.state_of_charge(later));
+        let rise_v = self.piece(end).integral_to(end) - self.segment.integral_to(start);
+        rise_v * battery.cell_capacity_c * battery.cells_in_series * battery.strings
+    }
+
+    /// Piece of the open-circuit voltage that holds a state of charge.
+    #[inline]
+    fn piece(&self, state_of_charge: f64) -> &Segment {
+        if self.segment.holds(state_of_charge) {
+            self.segment
+        } else {
+            self.battery.open_circuit_voltage.segment(state_of_charge)
+        }
     }
 
     fn finish(&self, current_a: f64, mean_open_circuit_v: f64) -> BatteryStep {

@@ -16,6 +16,12 @@ pub struct PumpState {
     pub pid: IncrementalPid,
 }
 
+/// Share of the way to its steady flow that the coolant column moves in a period.
+#[must_use]
+pub fn flow_approach(period_s: f64) -> f64 {
+    1.0 - (-period_s / FLOW_TIME_CONSTANT_S).exp()
+}
+
 impl PumpParameters {
     /// A pump idling at its smallest flow.
     #[must_use]
@@ -25,12 +31,14 @@ impl PumpParameters {
     }
 
     /// One control period of the pump.
-    pub fn follow(&self, state: &mut PumpState, demand_kg_s: f64, period_s: f64) {
+    ///
+    /// `approach` is [`flow_approach`] of the period.
+    pub fn follow(&self, state: &mut PumpState, demand_kg_s: f64, period_s: f64, approach: f64) {
         let demand_kg_s = demand_kg_s.clamp(self.minimum_flow_kg_s, self.maximum_flow_kg_s);
-        let error = (demand_kg_s - state.flow_kg_s) / self.maximum_flow_kg_s;
-        let low = self.minimum_flow_kg_s / self.maximum_flow_kg_s;
+        let per_maximum_s_kg = self.maximum_flow_kg_s.recip();
+        let error = (demand_kg_s - state.flow_kg_s) * per_maximum_s_kg;
+        let low = self.minimum_flow_kg_s * per_maximum_s_kg;
         let drive = state.pid.update(&self.pid, error, period_s, low, 1.0);
-        let approach = 1.0 - (-period_s / FLOW_TIME_CONSTANT_S).exp();
         state.flow_kg_s += approach * (drive * self.maximum_flow_kg_s - state.flow_kg_s);
     }
 

@@ -13,7 +13,7 @@ const TRANSITION_REYNOLDS: f64 = 5e5;
 #[must_use]
 pub fn convection_coefficient_w_m2_k(speed_m_s: f64, length_m: f64, air: &AirProperties) -> f64 {
     let reynolds = air.density_kg_m3 * speed_m_s * length_m / air.viscosity_pa_s;
-    let scale = air.prandtl.cbrt() * air.conductivity_w_m_k / length_m;
+    let scale = air.prandtl_cube_root * air.conductivity_w_m_k / length_m;
     if reynolds < TRANSITION_REYNOLDS {
         0.664 * reynolds.sqrt() * scale
     } else {

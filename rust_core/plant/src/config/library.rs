@@ -35,6 +35,8 @@ pub enum Kind {
     Episodes,
     /// `rewards/*.toml`
     Reward,
+    /// `benchmark/*.toml`
+    Benchmark,
     /// `agents/*.toml`
     Training,
 }
@@ -51,6 +53,7 @@ impl Kind {
             Self::Calibration => ("calibration", "toml"),
             Self::Episodes => ("episodes", "toml"),
             Self::Reward => ("rewards", "toml"),
+            Self::Benchmark => ("benchmark", "toml"),
             Self::Training => ("agents", "toml"),
         }
     }
@@ -67,6 +70,7 @@ impl Kind {
             Self::Calibration => "calibration",
             Self::Episodes => "distribution of episodes",
             Self::Reward => "reward",
+            Self::Benchmark => "benchmark",
             Self::Training => "training configuration",
         }
     }

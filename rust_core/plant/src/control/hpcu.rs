@@ -3,7 +3,8 @@
 //! Three purposes: constant coolant flow demands, connections of the components, compressor demand. It reads
 //! the plant's temperatures as a real one does and has no way to the plant but its [`Demand`].
 
-use super::pid::ResetPid;
+use super::pid::{ResetGains, ResetPid};
+use crate::circuits::assembly::NODES;
 use crate::circuits::branches::Branch;
 use crate::command::{Connection, Demand, Member};
 use crate::config::Celsius;
@@ -67,6 +68,16 @@ pub struct Hpcu {
     pub parameters: HpcuParameters,
     /// Sources, battery treatment, PTC.
     pub strategy: Strategy,
+    gains: PowerGains,
+}
+
+/// Gains of the four PIDs of the compressor power.
+#[derive(Debug, Clone, PartialEq)]
+struct PowerGains {
+    cabin: ResetGains,
+    battery: ResetGains,
+    htc: ResetGains,
+    chiller: ResetGains,
 }
 
 impl Hpcu {
@@ -74,13 +85,26 @@ impl Hpcu {
     #[must_use]
     pub fn of(controller: &Controller, strategy: &Strategy, ambient: Celsius) -> Self {
         let (parameters, strategy) = controller.at(ambient, strategy);
-        Self { parameters, strategy }
+        Self::new(parameters, strategy)
+    }
+
+    /// An HPCU with parameters and what it may use.
+    #[must_use]
+    pub fn new(parameters: HpcuParameters, strategy: Strategy) -> Self {
+        let gains = |pid: &PidParameters| ResetGains::new(pid, CONTROL_PERIOD_S);
+        let gains = PowerGains {
+            cabin: gains(&parameters.cabin_pid),
+            battery: gains(&parameters.battery_pid),
+            htc: gains(&parameters.htc_pid),
+            chiller: gains(&parameters.chiller_pid),
+        };
+        Self { parameters, strategy, gains }
     }
 
     /// Memory at the start of a run.
     #[must_use]
-    pub fn awake(&self, plant: &Plant, state: &State) -> HpcuState {
-        let cabin_k = temperature_k(state, plant.assembly.nodes.cabin);
+    pub fn awake(&self, state: &State) -> HpcuState {
+        let cabin_k = temperature_k(state, NODES.cabin);
         let warm = cabin_k > self.parameters.cabin_set_point_degc.kelvin();
         HpcuState {
             cabin_mode: if warm { CabinMode::Cooling } else { CabinMode::Heating },
@@ -103,12 +127,12 @@ impl Hpcu {
         memory: &mut HpcuState,
         requests_w: &[f64; 6],
     ) -> Demand {
-        let mode = self.cabin_mode(plant, state, memory);
+        let mode = self.cabin_mode(state, memory);
         let mut demand = Demand {
             connections: self.connections(plant, state, memory, mode),
             ptc_allowed: self.strategy.ptc
                 && mode == CabinMode::Heating
-                && self.cabin_error_k(plant, state, mode) >= self.parameters.ptc_from_deviation_k,
+                && self.cabin_error_k(state, mode) >= self.parameters.ptc_from_deviation_k,
             recirculation: match mode {
                 CabinMode::Heating => self.parameters.heating_recirculation,
                 CabinMode::Cooling => self.parameters.cooling_recirculation,
@@ -120,14 +144,13 @@ impl Hpcu {
             cabin_set_point_k: self.parameters.cabin_set_point_degc.kelvin(),
             ..Demand::default()
         };
-        self.trim_requests(plant, state, memory, mode, &mut demand);
+        self.trim_requests(state, memory, mode, &mut demand);
         demand.compressor_power_w = self.compressor_power_w(plant, state, memory, mode);
         demand
     }
 
-    fn cabin_mode(&self, plant: &Plant, state: &State, memory: &mut HpcuState) -> CabinMode {
-        let above_k =
-            temperature_k(state, plant.assembly.nodes.cabin) - self.parameters.cabin_set_point_degc.kelvin();
+    fn cabin_mode(&self, state: &State, memory: &mut HpcuState) -> CabinMode {
+        let above_k = temperature_k(state, NODES.cabin) - self.parameters.cabin_set_point_degc.kelvin();
         memory.cabin_mode = match self.strategy.climate_control {
             ClimateControl::Heat => CabinMode::Heating,
             ClimateControl::Cool => CabinMode::Cooling,
@@ -151,7 +174,7 @@ impl Hpcu {
         };
         let mut connections = [Connection::Isolated; 6];
         let mut set = |member: Member, connection: Connection| connections[member as usize] = connection;
-        set(Member::Battery, self.battery_connection(plant, state, memory));
+        set(Member::Battery, self.battery_connection(state, memory));
         set(Member::Motor, source(self.strategy.motor));
         set(Member::Transmission, source(self.strategy.transmission));
         // Air conditioning rejects its heat through the front-end exchanger.
@@ -161,9 +184,9 @@ impl Hpcu {
         connections
     }
 
-    fn battery_connection(&self, plant: &Plant, state: &State, memory: &mut HpcuState) -> Connection {
+    fn battery_connection(&self, state: &State, memory: &mut HpcuState) -> Connection {
         let limits = &self.parameters.battery;
-        let battery_k = temperature_k(state, plant.assembly.nodes.battery);
+        let battery_k = temperature_k(state, NODES.battery);
         let heat_up_to_k = limits.heat_up_to_degc.kelvin();
         let cool_above_k = limits.cool_above_degc.kelvin();
         (memory.heats_battery, memory.cools_battery) = match self.strategy.battery {
@@ -210,21 +233,13 @@ impl Hpcu {
     }
 
     /// Lets requests fade near their targets, so that neither cabin nor battery overshoots.
-    fn trim_requests(
-        &self,
-        plant: &Plant,
-        state: &State,
-        memory: &HpcuState,
-        mode: CabinMode,
-        demand: &mut Demand,
-    ) {
-        let nodes = &plant.assembly.nodes;
-        let beyond_k = self.cabin_error_k(plant, state, mode) + self.parameters.cabin_request_band_k;
+    fn trim_requests(&self, state: &State, memory: &HpcuState, mode: CabinMode, demand: &mut Demand) {
+        let beyond_k = self.cabin_error_k(state, mode) + self.parameters.cabin_request_band_k;
         demand.requests_w[Member::Cabin as usize] *=
             (beyond_k / self.parameters.cabin_request_band_k).clamp(0.0, 1.0);
         if self.strategy.battery == BatteryTreatment::Source && memory.cools_battery {
             let limits = &self.parameters.battery;
-            let above_k = temperature_k(state, nodes.battery) - limits.source_down_to_degc.kelvin();
+            let above_k = temperature_k(state, NODES.battery) - limits.source_down_to_degc.kelvin();
             demand.requests_w[Member::Battery as usize] *=
                 (above_k / limits.source_request_band_k).clamp(0.0, 1.0);
         }
@@ -234,9 +249,8 @@ impl Hpcu {
     }
 
     /// Deviation that calls for compressor power [K].
-    fn cabin_error_k(&self, plant: &Plant, state: &State, mode: CabinMode) -> f64 {
-        let below_k =
-            self.parameters.cabin_set_point_degc.kelvin() - temperature_k(state, plant.assembly.nodes.cabin);
+    fn cabin_error_k(&self, state: &State, mode: CabinMode) -> f64 {
+        let below_k = self.parameters.cabin_set_point_degc.kelvin() - temperature_k(state, NODES.cabin);
         match mode {
             CabinMode::Heating => below_k,
             CabinMode::Cooling => -below_k,
@@ -254,42 +268,40 @@ impl Hpcu {
         if !self.strategy.heat_pump {
             return 0.0;
         }
-        let nodes = &plant.assembly.nodes;
         let highest_w = plant.vehicle.refrigeration.compressor.maximum_power_w;
         let applied_w = if state.refrigeration.compressor.running {
             state.compressor_power_w
         } else {
             memory.demanded_w.min(RESTART_SHARE * highest_w)
         };
-        let power = |pid: &mut ResetPid, gains: &PidParameters, error_k: f64| {
-            pid.applied(gains, applied_w, CONTROL_PERIOD_S);
-            pid.output(gains, error_k, CONTROL_PERIOD_S, 0.0, highest_w)
+        let power = |pid: &mut ResetPid, gains: &ResetGains, error_k: f64| {
+            pid.applied(gains, applied_w);
+            pid.output(gains, error_k, 0.0, highest_w)
         };
         let parameters = &self.parameters;
-        let cabin_w =
-            power(&mut memory.cabin_pid, &parameters.cabin_pid, self.cabin_error_k(plant, state, mode));
-        let battery_w = match self.battery_error_k(plant, state, memory) {
-            Some(error_k) => power(&mut memory.battery_pid, &parameters.battery_pid, error_k),
+        let cabin_w = power(&mut memory.cabin_pid, &self.gains.cabin, self.cabin_error_k(state, mode));
+        let battery_w = match self.battery_error_k(state, memory) {
+            Some(error_k) => power(&mut memory.battery_pid, &self.gains.battery, error_k),
             None => 0.0,
         };
         if battery_w == 0.0 {
             memory.battery_pid.clear();
         }
-        let htc_error_k = parameters.htc_set_point_degc.kelvin() - temperature_k(state, nodes.htc_supply);
+        let htc_error_k = parameters.htc_set_point_degc.kelvin() - temperature_k(state, NODES.htc_supply);
         let chiller_set_point = match mode {
             CabinMode::Heating => parameters.chiller_set_point_degc,
             CabinMode::Cooling => parameters.cooling_chiller_set_point_degc,
         };
-        let chiller_error_k = temperature_k(state, nodes.chiller_supply) - chiller_set_point.kelvin();
-        let htc_w = power(&mut memory.htc_pid, &parameters.htc_pid, htc_error_k);
-        let chiller_w = power(&mut memory.chiller_pid, &parameters.chiller_pid, chiller_error_k);
+        let chiller_error_k = temperature_k(state, NODES.chiller_supply) - chiller_set_point.kelvin();
+        let htc_w = power(&mut memory.htc_pid, &self.gains.htc, htc_error_k);
+        let chiller_w = power(&mut memory.chiller_pid, &self.gains.chiller, chiller_error_k);
         memory.demanded_w = cabin_w.max(battery_w).min(htc_w).min(chiller_w);
         memory.demanded_w
     }
 
     /// Deviation of the battery from its target while the loops act on it [K].
-    fn battery_error_k(&self, plant: &Plant, state: &State, memory: &HpcuState) -> Option<f64> {
-        let battery_k = temperature_k(state, plant.assembly.nodes.battery);
+    fn battery_error_k(&self, state: &State, memory: &HpcuState) -> Option<f64> {
+        let battery_k = temperature_k(state, NODES.battery);
         let limits = &self.parameters.battery;
         if memory.heats_battery {
             return state.connected[Branch::BatteryHtc as usize]

@@ -4,3 +4,4 @@ pub mod heat_demand_commander;
 pub mod hpcu;
 pub mod pid;
 pub mod thermal_switch;
+pub(crate) mod vehicle_controls;

@@ -14,21 +14,45 @@ pub struct ResetPid {
     started: bool,
 }
 
+/// Gains of a [`ResetPid`] at one period.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ResetGains {
+    proportional: f64,
+    /// Derivative gain over the period.
+    derivative: f64,
+    /// Share of the way to the applied output that the reset moves in a period.
+    reset_share: f64,
+}
+
+impl ResetGains {
+    /// Gains for a period [s].
+    #[must_use]
+    pub fn new(gains: &PidParameters, period_s: f64) -> Self {
+        let resets = gains.proportional > 0.0;
+        Self {
+            proportional: gains.proportional,
+            derivative: gains.derivative / period_s,
+            reset_share: if resets {
+                -(-period_s * gains.integral / gains.proportional).exp_m1()
+            } else {
+                0.0
+            },
+        }
+    }
+}
+
 impl ResetPid {
     /// Output for an error, limited to `low..=high`.
-    pub fn output(&mut self, gains: &PidParameters, error: f64, period_s: f64, low: f64, high: f64) -> f64 {
-        let change = if self.started { (error - self.last_error) / period_s } else { 0.0 };
+    pub fn output(&mut self, gains: &ResetGains, error: f64, low: f64, high: f64) -> f64 {
+        let change = if self.started { error - self.last_error } else { 0.0 };
         self.last_error = error;
         self.started = true;
         (gains.proportional * error + self.reset + gains.derivative * change).clamp(low, high)
     }
 
     /// Tells the controller which output was applied since.
-    pub fn applied(&mut self, gains: &PidParameters, output: f64, period_s: f64) {
-        if gains.proportional > 0.0 {
-            let share = -(-period_s * gains.integral / gains.proportional).exp_m1();
-            self.reset += share * (output - self.reset);
-        }
+    pub fn applied(&mut self, gains: &ResetGains, output: f64) {
+        self.reset += gains.reset_share * (output - self.reset);
     }
 
     /// Forgets everything.
@@ -82,22 +106,22 @@ mod tests {
 
     #[test]
     fn reset_pid_behind_a_minimum_selector_does_not_wind_up() {
-        let mut pid = ResetPid::default();
+        let (mut pid, gains) = (ResetPid::default(), ResetGains::new(&GAINS, 1.0));
         for _ in 0..10_000 {
-            let _ = pid.output(&GAINS, 5.0, 1.0, 0.0, 100.0);
-            pid.applied(&GAINS, 3.0, 1.0);
+            let _ = pid.output(&gains, 5.0, 0.0, 100.0);
+            pid.applied(&gains, 3.0);
         }
-        assert!((pid.output(&GAINS, 0.0, 1.0, 0.0, 100.0) - 3.0).abs() < 1e-9);
+        assert!((pid.output(&gains, 0.0, 0.0, 100.0) - 3.0).abs() < 1e-9);
     }
 
     #[test]
     fn reset_pid_removes_the_steady_error_of_a_first_order_lag() {
-        let mut pid = ResetPid::default();
+        let (mut pid, gains) = (ResetPid::default(), ResetGains::new(&GAINS, 1.0));
         let mut value = 0.0;
         for _ in 0..2000 {
-            let output = pid.output(&GAINS, 7.0 - value, 1.0, 0.0, 100.0);
+            let output = pid.output(&gains, 7.0 - value, 0.0, 100.0);
             value += 0.05 * (output - value);
-            pid.applied(&GAINS, output, 1.0);
+            pid.applied(&gains, output);
         }
         assert!((value - 7.0_f64).abs() < 1e-6);
     }
@@ -118,9 +142,9 @@ mod tests {
         let plain = PidParameters { proportional: 1.0, integral: 0.0, derivative: 0.0 };
         let damped = PidParameters { derivative: 4.0, ..plain.clone() };
         let run = |gains: &PidParameters| {
-            let mut pid = ResetPid::default();
-            let _ = pid.output(gains, 5.0, 1.0, -100.0, 100.0);
-            pid.output(gains, 4.0, 1.0, -100.0, 100.0)
+            let (mut pid, gains) = (ResetPid::default(), ResetGains::new(gains, 1.0));
+            let _ = pid.output(&gains, 5.0, -100.0, 100.0);
+            pid.output(&gains, 4.0, -100.0, 100.0)
         };
         assert_eq!(run(&plain) - run(&damped), 4.0);
     }

@@ -81,7 +81,33 @@ pub struct CondensingIsobar<T> {
     vapour: [T; 3],
 }
 
+impl<T: Real> SuctionState<T> {
+    /// The state as a function of all that the evaporating temperature depends on.
+    #[inline]
+    pub fn of<U: Real<Single = T>>(self, evaporating_k: U) -> SuctionState<U> {
+        SuctionState {
+            pressure_pa: evaporating_k.then(self.pressure_pa),
+            enthalpy_j_kg: evaporating_k.then(self.enthalpy_j_kg),
+            density_kg_m3: evaporating_k.then(self.density_kg_m3),
+            entropy_j_kg_k: evaporating_k.then(self.entropy_j_kg_k),
+        }
+    }
+}
+
 impl<T: Real> CondensingIsobar<T> {
+    /// The isobar as a function of all that the condensing temperature depends on.
+    #[inline]
+    pub fn of<U: Real<Single = T>>(self, condensing_k: U) -> CondensingIsobar<U> {
+        CondensingIsobar {
+            temperature_k: condensing_k.then(self.temperature_k),
+            pressure_pa: condensing_k.then(self.pressure_pa),
+            dew_enthalpy_j_kg: condensing_k.then(self.dew_enthalpy_j_kg),
+            dew_entropy_j_kg_k: condensing_k.then(self.dew_entropy_j_kg_k),
+            liquid: self.liquid.map(|coefficient| condensing_k.then(coefficient)),
+            vapour: self.vapour.map(|coefficient| condensing_k.then(coefficient)),
+        }
+    }
+
     /// Enthalpy of liquid at this pressure, `subcooling_k` below saturation [J/kg].
     #[inline]
     pub fn liquid_enthalpy_j_kg(&self, subcooling_k: T) -> T {
@@ -233,8 +259,12 @@ impl RefrigerantTable {
         if excess.value() <= 0.0 {
             return isobar.temperature_k;
         }
-        let c =
-            self.table.evaluate::<T, ISOBAR_TEMPERATURE, ISOBAR_TEMPERATURE_COLUMNS>(isobar.temperature_k);
+        let c = self
+            .table
+            .evaluate::<T::Single, ISOBAR_TEMPERATURE, ISOBAR_TEMPERATURE_COLUMNS>(
+                isobar.temperature_k.alone(),
+            )
+            .map(|coefficient| isobar.temperature_k.then(coefficient));
         let [coefficients @ .., range] = c;
         let inside = excess.min(range);
         let rise = inside * polynomial(&coefficients, inside);

@@ -18,7 +18,7 @@ pub enum TableFault {
 pub struct CubicTable<const COLUMNS: usize> {
     first: f64,
     last: f64,
-    step: f64,
+    per_step: f64,
     /// Per interval: coefficients of the local coordinate's powers 0 to 3, each a row of columns.
     intervals: Vec<[[f64; COLUMNS]; 4]>,
 }
@@ -51,7 +51,7 @@ impl<const COLUMNS: usize> CubicTable<COLUMNS> {
                 interval[3][column] = left + right - 2.0 * rise;
             }
         }
-        Ok(Self { first, last, step, intervals })
+        Ok(Self { first, last, per_step: step.recip(), intervals })
     }
 
     /// Lowest node.
@@ -70,17 +70,31 @@ impl<const COLUMNS: usize> CubicTable<COLUMNS> {
     #[inline]
     pub fn evaluate<T: Real, const START: usize, const LENGTH: usize>(&self, x: T) -> [T; LENGTH] {
         let inside = x.value().clamp(self.first, self.last);
-        let position = (inside - self.first) / self.step;
+        let position = (inside - self.first) * self.per_step;
         let index = (position as usize).min(self.intervals.len() - 1);
         let u = position - index as f64;
         // Held end values have no slope.
-        let scale = if inside == x.value() { self.step.recip() } else { 0.0 };
-        let [c0, c1, c2, c3] = &self.intervals[index];
-        std::array::from_fn(|k| {
-            let (a, b, c, d) = (c0[START + k], c1[START + k], c2[START + k], c3[START + k]);
-            x.chain(a + u * (b + u * (c + u * d)), scale * (b + u * (2.0 * c + u * 3.0 * d)))
-        })
+        let scale = if inside == x.value() { self.per_step } else { 0.0 };
+        let powers = self.intervals[index].each_ref().map(columns::<COLUMNS, START, LENGTH>);
+        // Values and slopes apart, so that several columns are worked out at once.
+        let mut values = [0.0; LENGTH];
+        let mut slopes = [0.0; LENGTH];
+        for k in 0..LENGTH {
+            let [a, b, c, d] = powers.map(|row| row[k]);
+            values[k] = a + u * (b + u * (c + u * d));
+            slopes[k] = scale * (b + u * (2.0 * c + u * 3.0 * d));
+        }
+        std::array::from_fn(|k| x.chain(values[k], slopes[k]))
     }
+}
+
+/// Neighbouring columns of a row.
+#[inline]
+fn columns<const COLUMNS: usize, const START: usize, const LENGTH: usize>(
+    row: &[f64; COLUMNS],
+) -> &[f64; LENGTH] {
+    const { assert!(START + LENGTH <= COLUMNS, "the table has no such columns") };
+    row[START..].first_chunk().expect("the columns exist")
 }
 
 /// Slopes per step at the nodes of the C2 spline whose third derivative is continuous at the second and the

@@ -15,8 +15,18 @@ pub trait Real:
     + Mul<f64, Output = Self>
     + Div<f64, Output = Self>
 {
+    /// A function of one of these numbers alone, with at most one derivative.
+    type Single: Real;
+
     /// A number without derivatives.
     fn constant(value: f64) -> Self;
+
+    /// The number as the one variable of functions that depend on nothing else.
+    fn alone(self) -> Self::Single;
+
+    /// A function that was evaluated at `self.alone()`, as a function of what `self` depends on.
+    #[must_use]
+    fn then(self, function: Self::Single) -> Self;
 
     /// The number without its derivatives.
     fn value(self) -> f64;
@@ -80,6 +90,18 @@ pub trait Real:
 }
 
 impl Real for f64 {
+    type Single = Self;
+
+    #[inline]
+    fn alone(self) -> Self {
+        self
+    }
+
+    #[inline]
+    fn then(self, function: Self) -> Self {
+        function
+    }
+
     #[inline]
     fn constant(value: f64) -> Self {
         value
@@ -125,6 +147,18 @@ impl<const N: usize> Dual<N> {
 }
 
 impl<const N: usize> Real for Dual<N> {
+    type Single = Dual<1>;
+
+    #[inline]
+    fn alone(self) -> Dual<1> {
+        Dual { value: self.value, gradient: [1.0] }
+    }
+
+    #[inline]
+    fn then(self, function: Dual<1>) -> Self {
+        self.chain(function.value, function.gradient[0])
+    }
+
     #[inline]
     fn constant(value: f64) -> Self {
         Self { value, gradient: [0.0; N] }
@@ -230,6 +264,18 @@ mod tests {
 
     fn formula<T: Real>(x: T, y: T) -> T {
         ((x * y + x / y).sqrt() * x.ln() - y.powi(3) * 0.1 + x.exp() * 0.01 - y.recip()).max(x) / 2.0 + y
+    }
+
+    #[test]
+    fn functions_of_one_variable_give_the_same_gradient() {
+        let (x, y) = (Dual::<2>::variable(2.3, 0), Dual::variable(1.7, 1));
+        let z = x * y;
+        let apart = z.then(z.alone().exp() * z.alone().sqrt() + z.alone());
+        let whole = z.exp() * z.sqrt() + z;
+        assert!((apart.value - whole.value).abs() < 1e-12);
+        for k in 0..2 {
+            assert!((apart.gradient[k] - whole.gradient[k]).abs() < 1e-11);
+        }
     }
 
     #[test]

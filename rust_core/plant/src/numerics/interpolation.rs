@@ -1,11 +1,49 @@
 //! Piecewise linear tables; end values are held outside the axis.
 
+/// A straight piece of a function, with the integral up to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// Where it begins; the last point of the axis for what lies beyond, the first for what lies before.
+    from: f64,
+    /// Where it ends.
+    to: f64,
+    value: f64,
+    /// Slope; zero outside the axis.
+    pub slope: f64,
+    integral: f64,
+}
+
+impl Segment {
+    /// Value at `x`.
+    #[must_use]
+    #[inline]
+    pub fn at(&self, x: f64) -> f64 {
+        self.value + self.slope * (x - self.from)
+    }
+
+    /// Integral from the first point of the axis to `x`.
+    #[must_use]
+    #[inline]
+    pub fn integral_to(&self, x: f64) -> f64 {
+        let length = x - self.from;
+        self.integral + length * (self.value + 0.5 * self.slope * length)
+    }
+
+    /// Whether `x` lies on the straight piece inside the axis.
+    #[must_use]
+    #[inline]
+    pub fn holds(&self, x: f64) -> bool {
+        x >= self.from && x <= self.to
+    }
+}
+
 /// Piecewise linear function of one variable, with its integral.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearTable {
-    axis: Vec<f64>,
-    values: Vec<f64>,
-    integrals: Vec<f64>,
+    /// Points of the axis between the first and the last.
+    inner: Vec<f64>,
+    /// What lies before the axis, its intervals, what lies beyond.
+    segments: Vec<Segment>,
 }
 
 impl LinearTable {
@@ -16,64 +54,94 @@ impl LinearTable {
     #[must_use]
     pub fn new(axis: &[f64], values: &[f64]) -> Self {
         assert!(axis.len() >= 2 && axis.len() == values.len(), "table needs matching axis and values");
-        let mut integrals = vec![0.0; axis.len()];
-        for i in 1..axis.len() {
-            integrals[i] = integrals[i - 1] + 0.5 * (values[i] + values[i - 1]) * (axis[i] - axis[i - 1]);
+        let last = axis.len() - 1;
+        let flat = |k: usize, integral: f64| Segment {
+            from: axis[k],
+            to: axis[k],
+            value: values[k],
+            slope: 0.0,
+            integral,
+        };
+        let mut segments = vec![flat(0, 0.0)];
+        let mut integral = 0.0;
+        for i in 0..last {
+            let (from, to, value) = (axis[i], axis[i + 1], values[i]);
+            let segment = Segment { from, to, value, slope: (values[i + 1] - value) / (to - from), integral };
+            integral = segment.integral_to(to);
+            segments.push(segment);
         }
-        Self { axis: axis.to_vec(), values: values.to_vec(), integrals }
+        segments.push(flat(last, integral));
+        Self { inner: axis[1..last].to_vec(), segments }
+    }
+
+    /// The straight piece that holds `x`.
+    #[must_use]
+    #[inline]
+    pub fn segment(&self, x: f64) -> &Segment {
+        let last = self.segments.len() - 1;
+        if x < self.segments[0].from {
+            &self.segments[0]
+        } else if x > self.segments[last].from {
+            &self.segments[last]
+        } else {
+            &self.segments[1 + interval(&self.inner, x)]
+        }
     }
 
     /// Value at `x`.
     #[must_use]
     #[inline]
     pub fn at(&self, x: f64) -> f64 {
-        let (i, weight) = locate(&self.axis, x);
-        self.values[i] + weight * (self.values[i + 1] - self.values[i])
-    }
-
-    /// Value and slope at `x`; the slope is zero outside the axis.
-    #[must_use]
-    pub fn with_slope(&self, x: f64) -> (f64, f64) {
-        let (i, weight) = locate(&self.axis, x);
-        let rise = self.values[i + 1] - self.values[i];
-        let inside = x >= self.axis[0] && x <= self.axis[self.axis.len() - 1];
-        let slope = if inside { rise / (self.axis[i + 1] - self.axis[i]) } else { 0.0 };
-        (self.values[i] + weight * rise, slope)
+        self.segment(x).at(x)
     }
 
     /// Integral from the first point of the axis to `x`.
     #[must_use]
+    #[inline]
     pub fn integral_to(&self, x: f64) -> f64 {
-        let last = self.axis.len() - 1;
-        if x <= self.axis[0] {
-            return self.values[0] * (x - self.axis[0]);
-        }
-        if x >= self.axis[last] {
-            return self.integrals[last] + self.values[last] * (x - self.axis[last]);
-        }
-        let (i, weight) = locate(&self.axis, x);
-        let value = self.values[i] + weight * (self.values[i + 1] - self.values[i]);
-        self.integrals[i] + 0.5 * (self.values[i] + value) * (x - self.axis[i])
+        self.segment(x).integral_to(x)
     }
 }
 
-/// Interval of a rising axis that holds `x` and the weight of its upper end, held at both ends.
+/// Interval that holds `x`, given the points between the first and the last. A plain search: the axes are short and
+/// neighbouring look-ups end at the same place.
 #[inline]
-fn locate(axis: &[f64], x: f64) -> (usize, f64) {
-    let last = axis.len() - 2;
-    let mut i = 0;
-    while i < last && x >= axis[i + 1] {
-        i += 1;
+fn interval(inner: &[f64], x: f64) -> usize {
+    inner.iter().position(|&point| x < point).unwrap_or(inner.len())
+}
+
+/// A rising axis, prepared for look-ups.
+#[derive(Debug, Clone, PartialEq)]
+struct Axis {
+    inner: Vec<f64>,
+    /// Where each interval begins and the reciprocal of its length.
+    intervals: Vec<(f64, f64)>,
+}
+
+impl Axis {
+    fn new(points: &[f64]) -> Self {
+        Self {
+            inner: points[1..points.len() - 1].to_vec(),
+            intervals: points.windows(2).map(|pair| (pair[0], (pair[1] - pair[0]).recip())).collect(),
+        }
     }
-    (i, ((x - axis[i]) / (axis[i + 1] - axis[i])).clamp(0.0, 1.0))
+
+    /// Interval that holds `x` and the weight of its upper end, held at both ends.
+    #[inline]
+    fn locate(&self, x: f64) -> (usize, f64) {
+        let i = interval(&self.inner, x);
+        let (from, per_length) = self.intervals[i];
+        (i, ((x - from) * per_length).clamp(0.0, 1.0))
+    }
 }
 
 /// Several piecewise bilinear functions on one grid (rows: first axis, columns: second axis).
 #[derive(Debug, Clone, PartialEq)]
 pub struct BilinearTable<const N: usize> {
-    rows: Vec<f64>,
-    columns: Vec<f64>,
-    values: Vec<[f64; N]>,
+    rows: Axis,
+    columns: Axis,
+    /// Per cell: coefficients of 1, the column's weight, the row's weight and their product.
+    cells: Vec<[[f64; N]; 4]>,
 }
 
 impl<const N: usize> BilinearTable<N> {
@@ -83,27 +151,31 @@ impl<const N: usize> BilinearTable<N> {
     /// Sizes that do not match; configuration checks exclude that.
     #[must_use]
     pub fn new(rows: &[f64], columns: &[f64], functions: [&[Vec<f64>]; N]) -> Self {
-        let width = columns.len();
-        let values = (0..rows.len() * width)
-            .map(|corner| functions.map(|table| table[corner / width][corner % width]))
-            .collect();
-        Self { rows: rows.to_vec(), columns: columns.to_vec(), values }
+        let cell = |i: usize, j: usize| {
+            let corners = functions.map(|f| [f[i][j], f[i][j + 1], f[i + 1][j], f[i + 1][j + 1]]);
+            [
+                corners.map(|[a, _, _, _]| a),
+                corners.map(|[a, b, _, _]| b - a),
+                corners.map(|[a, _, c, _]| c - a),
+                corners.map(|[a, b, c, d]| (d - c) - (b - a)),
+            ]
+        };
+        let width = columns.len() - 1;
+        Self {
+            rows: Axis::new(rows),
+            columns: Axis::new(columns),
+            cells: (0..(rows.len() - 1) * width).map(|k| cell(k / width, k % width)).collect(),
+        }
     }
 
     /// All functions at one point.
     #[must_use]
     #[inline]
     pub fn at(&self, row: f64, column: f64) -> [f64; N] {
-        let (i, u) = locate(&self.rows, row);
-        let (j, v) = locate(&self.columns, column);
-        let width = self.columns.len();
-        let corner = |di: usize, dj: usize| &self.values[(i + di) * width + j + dj];
-        let (a, b, c, d) = (corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1));
-        std::array::from_fn(|k| {
-            let low = a[k] + v * (b[k] - a[k]);
-            let high = c[k] + v * (d[k] - c[k]);
-            low + u * (high - low)
-        })
+        let (i, u) = self.rows.locate(row);
+        let (j, v) = self.columns.locate(column);
+        let [a, b, c, d] = &self.cells[i * self.columns.intervals.len() + j];
+        std::array::from_fn(|k| a[k] + v * b[k] + u * (c[k] + v * d[k]))
     }
 }
 

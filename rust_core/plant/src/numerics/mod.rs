@@ -2,6 +2,7 @@
 
 pub mod cubic_table;
 pub mod dual;
+mod elimination;
 pub mod interpolation;
 pub mod root;
 pub mod thermal_network;

@@ -1,9 +1,12 @@
 //! A network of heat capacities and links, stepped by backward Euler.
 //!
-//! Nodes and links are declared once; the order of elimination and the sparsity follow from them. A link
-//! carries `G (w_hot T_hot - w_cold T_cold + offset)` from the node that loses it to the node that gains it.
-//! The nodes whose temperatures drive a link need not be those that exchange the heat: a coolant branch is
-//! driven by the supply temperature and takes its heat from the return node.
+//! Nodes and links are declared once, as constants; the order of elimination follows from them while the crate is
+//! compiled (see [`super::elimination`]). A link carries `G (w_hot T_hot - w_cold T_cold + offset)` from the node
+//! that loses it to the node that gains it. The nodes whose temperatures drive a link need not be those that
+//! exchange the heat: a coolant branch is driven by the supply temperature and takes its heat from the return node.
+
+use super::elimination::{Elimination, MAXIMUM_ENTRIES, unrolled};
+use std::marker::PhantomData;
 
 /// Largest number of nodes.
 pub const MAXIMUM_NODES: usize = 16;
@@ -16,10 +19,16 @@ pub const MAXIMUM_LINKS: usize = 40;
 pub struct Node(u8);
 
 impl Node {
+    /// Node number `position` of a topology.
+    #[must_use]
+    pub const fn new(position: u8) -> Self {
+        Self(position)
+    }
+
     /// Position in arrays of node values.
     #[must_use]
     #[inline]
-    pub fn index(self) -> usize {
+    pub const fn index(self) -> usize {
         self.0 as usize
     }
 }
@@ -40,13 +49,13 @@ pub struct LinkPorts {
 impl LinkPorts {
     /// Plain conduction between two nodes.
     #[must_use]
-    pub fn between(from: Node, to: Node) -> Self {
+    pub const fn between(from: Node, to: Node) -> Self {
         Self { loses: Some(from), gains: Some(to), hot: Some(from), cold: Some(to) }
     }
 
     /// Plain conduction from a node to the surroundings; their temperature is the (negative) offset.
     #[must_use]
-    pub fn to_surroundings(from: Node) -> Self {
+    pub const fn to_surroundings(from: Node) -> Self {
         Self { loses: Some(from), gains: None, hot: Some(from), cold: None }
     }
 }
@@ -93,115 +102,42 @@ impl LinkState {
 /// One value for each node.
 pub type NodeValues = [f64; MAXIMUM_NODES];
 
-/// Declares nodes and links of a network.
-#[derive(Debug, Clone, Default)]
-pub struct NetworkBuilder {
-    capacities_j_k: Vec<f64>,
-    links: Vec<LinkPorts>,
+/// Which nodes there are and what connects them.
+pub trait Topology {
+    /// Number of nodes.
+    const NODES: usize;
+    /// Links; states of a step come in the same order.
+    const LINKS: &'static [LinkPorts];
+    /// Nodes whose temperatures are wanted most often: they are eliminated last, so known first.
+    const KNOWN_FIRST: &'static [Node];
 }
 
-impl NetworkBuilder {
-    /// Adds a node with a heat capacity [J/K].
-    ///
-    /// # Panics
-    /// More than [`MAXIMUM_NODES`] nodes.
-    pub fn node(&mut self, heat_capacity_j_k: f64) -> Node {
-        assert!(self.capacities_j_k.len() < MAXIMUM_NODES, "too many thermal nodes");
-        self.capacities_j_k.push(heat_capacity_j_k);
-        Node((self.capacities_j_k.len() - 1) as u8)
-    }
-
-    /// Adds a link; its number is the position in the slice of link states of a step.
-    ///
-    /// # Panics
-    /// More than [`MAXIMUM_LINKS`] links.
-    pub fn link(&mut self, ports: LinkPorts) -> usize {
-        assert!(self.links.len() < MAXIMUM_LINKS, "too many thermal links");
-        self.links.push(ports);
-        self.links.len() - 1
-    }
-
-    /// Works out the elimination.
-    #[must_use]
-    pub fn build(self) -> ThermalNetwork {
-        let nodes = self.capacities_j_k.len();
-        let mut capacities_j_k = [0.0; MAXIMUM_NODES];
-        capacities_j_k[..nodes].copy_from_slice(&self.capacities_j_k);
-        let elimination = Elimination::of(nodes, &self.links);
-        ThermalNetwork { nodes, capacities_j_k, links: self.links, elimination }
-    }
-}
-
-/// Rows to update for one pivot.
-#[derive(Debug, Clone)]
-struct Pivot {
-    column: usize,
-    rows: Vec<usize>,
-    columns: Vec<usize>,
-}
-
-/// Symbolic factorisation: pivots in order of least fill.
-#[derive(Debug, Clone)]
-struct Elimination {
-    pivots: Vec<Pivot>,
-}
-
-impl Elimination {
-    fn of(nodes: usize, links: &[LinkPorts]) -> Self {
-        let mut filled = [[false; MAXIMUM_NODES]; MAXIMUM_NODES];
-        for (i, row) in filled.iter_mut().enumerate().take(nodes) {
-            row[i] = true;
-        }
-        for link in links {
-            for row in [link.loses, link.gains].into_iter().flatten() {
-                for column in [link.hot, link.cold].into_iter().flatten() {
-                    filled[row.index()][column.index()] = true;
-                }
-            }
-        }
-        let mut remaining: Vec<usize> = (0..nodes).collect();
-        let mut pivots = Vec::with_capacity(nodes);
-        while !remaining.is_empty() {
-            let cost = |&k: &usize| {
-                let rows = remaining.iter().filter(|&&i| i != k && filled[i][k]).count();
-                let columns = remaining.iter().filter(|&&j| j != k && filled[k][j]).count();
-                (rows * columns, k)
-            };
-            let Some(k) = remaining.iter().copied().min_by_key(cost) else { break };
-            remaining.retain(|&i| i != k);
-            let rows: Vec<usize> = remaining.iter().copied().filter(|&i| filled[i][k]).collect();
-            let columns: Vec<usize> = remaining.iter().copied().filter(|&j| filled[k][j]).collect();
-            for &i in &rows {
-                for &j in &columns {
-                    filled[i][j] = true;
-                }
-            }
-            pivots.push(Pivot { column: k, rows, columns });
-        }
-        Self { pivots }
-    }
-}
-
-/// Heat capacities, links and the elimination worked out from them.
-#[derive(Debug, Clone)]
-pub struct ThermalNetwork {
-    nodes: usize,
+/// Heat capacities of a topology's nodes.
+#[derive(Debug)]
+pub struct ThermalNetwork<T> {
     capacities_j_k: NodeValues,
-    links: Vec<LinkPorts>,
-    elimination: Elimination,
+    topology: PhantomData<T>,
 }
 
-impl ThermalNetwork {
+impl<T> Clone for ThermalNetwork<T> {
+    fn clone(&self) -> Self {
+        Self { capacities_j_k: self.capacities_j_k, topology: PhantomData }
+    }
+}
+
+impl<T: Topology> ThermalNetwork<T> {
+    const ELIMINATION: Elimination = Elimination::of(T::NODES, T::LINKS, T::KNOWN_FIRST);
+
+    /// A network from the heat capacities of its nodes [J/K]; those beyond the topology's nodes count nothing.
+    #[must_use]
+    pub fn new(capacities_j_k: NodeValues) -> Self {
+        Self { capacities_j_k, topology: PhantomData }
+    }
+
     /// Number of nodes.
     #[must_use]
     pub fn nodes(&self) -> usize {
-        self.nodes
-    }
-
-    /// Ports of the links, in order of declaration.
-    #[must_use]
-    pub fn links(&self) -> &[LinkPorts] {
-        &self.links
+        T::NODES
     }
 
     /// Heat capacity of a node [J/K].
@@ -213,127 +149,193 @@ impl ThermalNetwork {
     /// Heat stored above 0 K [J].
     #[must_use]
     pub fn stored_heat_j(&self, temperatures_k: &NodeValues) -> f64 {
-        (0..self.nodes).map(|i| self.capacities_j_k[i] * temperatures_k[i]).sum()
+        (0..T::NODES).map(|i| self.capacities_j_k[i] * temperatures_k[i]).sum()
     }
 
     /// Heat gained between two sets of temperatures [J]; differences first, so nothing is lost to round-off.
     #[must_use]
     pub fn heat_gained_j(&self, before_k: &NodeValues, after_k: &NodeValues) -> f64 {
-        (0..self.nodes).map(|i| self.capacities_j_k[i] * (after_k[i] - before_k[i])).sum()
+        (0..T::NODES).map(|i| self.capacities_j_k[i] * (after_k[i] - before_k[i])).sum()
     }
 
     /// Assembles and factorises the backward-Euler system of a step.
     #[must_use]
-    pub fn factorise(&self, links: &[LinkState], step_s: f64) -> FactorisedStep<'_> {
-        let mut matrix = [[0.0; MAXIMUM_NODES]; MAXIMUM_NODES];
-        let mut constant_w = [0.0; MAXIMUM_NODES];
-        for (i, row) in matrix.iter_mut().enumerate().take(self.nodes) {
-            row[i] = self.capacities_j_k[i] / step_s;
+    #[inline]
+    pub fn factorise(&self, links: &[LinkState], step_s: f64) -> FactorisedStep<T> {
+        let mut step = FactorisedStep {
+            entries: [0.0; MAXIMUM_ENTRIES],
+            constant_w: [0.0; MAXIMUM_NODES],
+            capacity_rates_w_k: [0.0; MAXIMUM_NODES],
+            topology: PhantomData,
+        };
+        let per_second = step_s.recip();
+        for i in 0..T::NODES {
+            step.capacity_rates_w_k[i] = self.capacities_j_k[i] * per_second;
+            step.entries[Self::ELIMINATION.entry(i, i)] = step.capacity_rates_w_k[i];
         }
-        for (ports, link) in self.links.iter().zip(links) {
-            let g = link.conductance_w_k;
-            if g == 0.0 {
-                continue;
-            }
-            for (row, sign) in [(ports.loses, 1.0), (ports.gains, -1.0)] {
-                let Some(row) = row else { continue };
-                if let Some(hot) = ports.hot {
-                    matrix[row.index()][hot.index()] += sign * g * link.hot_weight;
-                }
-                if let Some(cold) = ports.cold {
-                    matrix[row.index()][cold.index()] -= sign * g * link.cold_weight;
-                }
-                constant_w[row.index()] -= sign * g * link.offset_k;
-            }
-        }
-        for pivot in &self.elimination.pivots {
-            let k = pivot.column;
-            let inverse = 1.0 / matrix[k][k];
-            for &i in &pivot.rows {
-                let factor = matrix[i][k] * inverse;
-                matrix[i][k] = factor;
-                for &j in &pivot.columns {
-                    matrix[i][j] -= factor * matrix[k][j];
-                }
-            }
-            matrix[k][k] = inverse;
-        }
-        FactorisedStep { network: self, matrix, constant_w, step_s }
+        unrolled!(assemble(links, &mut step));
+        unrolled!(eliminate(&mut step.entries));
+        step
     }
 
-    /// Heat flow of each link at given temperatures [W], written to `flows_w`.
-    pub fn link_flows(&self, links: &[LinkState], temperatures_k: &NodeValues, flows_w: &mut [f64]) {
-        for ((ports, link), flow) in self.links.iter().zip(links).zip(flows_w) {
-            let hot = ports.hot.map_or(0.0, |node| link.hot_weight * temperatures_k[node.index()]);
-            let cold = ports.cold.map_or(0.0, |node| link.cold_weight * temperatures_k[node.index()]);
-            *flow = link.conductance_w_k * (hot - cold + link.offset_k);
+    /// Enters link number `LINK`.
+    #[inline(always)]
+    fn assemble<const LINK: usize>(links: &[LinkState], step: &mut FactorisedStep<T>) {
+        if LINK >= T::LINKS.len() {
+            return;
         }
+        let (ports, link) = (&T::LINKS[LINK], &links[LINK]);
+        let hot_w_k = link.conductance_w_k * link.hot_weight;
+        let cold_w_k = link.conductance_w_k * link.cold_weight;
+        let fixed_w = link.conductance_w_k * link.offset_k;
+        if let Some(row) = ports.loses {
+            if let Some(hot) = ports.hot {
+                step.entries[Self::ELIMINATION.entry(row.index(), hot.index())] += hot_w_k;
+            }
+            if let Some(cold) = ports.cold {
+                step.entries[Self::ELIMINATION.entry(row.index(), cold.index())] -= cold_w_k;
+            }
+            step.constant_w[row.index()] -= fixed_w;
+        }
+        if let Some(row) = ports.gains {
+            if let Some(hot) = ports.hot {
+                step.entries[Self::ELIMINATION.entry(row.index(), hot.index())] -= hot_w_k;
+            }
+            if let Some(cold) = ports.cold {
+                step.entries[Self::ELIMINATION.entry(row.index(), cold.index())] += cold_w_k;
+            }
+            step.constant_w[row.index()] += fixed_w;
+        }
+    }
+
+    /// Operation number `POSITION` of the factorisation.
+    #[inline(always)]
+    fn eliminate<const POSITION: usize>(entries: &mut [f64; MAXIMUM_ENTRIES]) {
+        const { Self::ELIMINATION.factorise.at(POSITION) }.apply_to_matrix(entries);
+    }
+
+    /// Heat flow of each link at given temperatures [W].
+    #[must_use]
+    #[inline]
+    pub fn link_flows(&self, links: &[LinkState], temperatures_k: &NodeValues) -> [f64; MAXIMUM_LINKS] {
+        let mut flows_w = [0.0; MAXIMUM_LINKS];
+        unrolled!(link_flow(links, temperatures_k, &mut flows_w));
+        flows_w
+    }
+
+    #[inline(always)]
+    fn link_flow<const LINK: usize>(
+        links: &[LinkState],
+        temperatures_k: &NodeValues,
+        flows_w: &mut [f64; MAXIMUM_LINKS],
+    ) {
+        if LINK >= T::LINKS.len() {
+            return;
+        }
+        let (ports, link) = (&T::LINKS[LINK], &links[LINK]);
+        let hot = ports.hot.map_or(0.0, |node| link.hot_weight * temperatures_k[node.index()]);
+        let cold = ports.cold.map_or(0.0, |node| link.cold_weight * temperatures_k[node.index()]);
+        flows_w[LINK] = link.conductance_w_k * (hot - cold + link.offset_k);
     }
 }
 
 /// A factorised backward-Euler step; solves for any heat sources.
-#[derive(Debug, Clone)]
-pub struct FactorisedStep<'a> {
-    network: &'a ThermalNetwork,
-    matrix: [NodeValues; MAXIMUM_NODES],
+#[derive(Debug)]
+pub struct FactorisedStep<T> {
+    entries: [f64; MAXIMUM_ENTRIES],
     constant_w: NodeValues,
-    step_s: f64,
+    capacity_rates_w_k: NodeValues,
+    topology: PhantomData<T>,
 }
 
-impl FactorisedStep<'_> {
+impl<T: Topology> FactorisedStep<T> {
     /// Temperatures at the end of the step [K] from those at its beginning and the heat sources [W].
+    ///
+    /// Inlined, so that a caller who reads only some of the temperatures does not pay for the others.
     #[must_use]
+    #[inline(always)]
     pub fn advance(&self, temperatures_k: &NodeValues, sources_w: &NodeValues) -> NodeValues {
         let mut right = *sources_w;
-        for i in 0..self.network.nodes {
-            right[i] += self.constant_w[i] + self.network.capacities_j_k[i] / self.step_s * temperatures_k[i];
+        for i in 0..T::NODES {
+            right[i] += self.constant_w[i] + self.capacity_rates_w_k[i] * temperatures_k[i];
         }
         self.substitute(right)
     }
 
     /// Change of all temperatures per watt brought in by `sources_w` [K].
     #[must_use]
+    #[inline(always)]
     pub fn response(&self, sources_w: &NodeValues) -> NodeValues {
         self.substitute(*sources_w)
     }
 
+    #[inline(always)]
     fn substitute(&self, mut right: NodeValues) -> NodeValues {
-        for pivot in &self.network.elimination.pivots {
-            let value = right[pivot.column];
-            for &i in &pivot.rows {
-                right[i] -= self.matrix[i][pivot.column] * value;
-            }
-        }
-        for pivot in self.network.elimination.pivots.iter().rev() {
-            let k = pivot.column;
-            let known: f64 = pivot.columns.iter().map(|&j| self.matrix[k][j] * right[j]).sum();
-            right[k] = (right[k] - known) * self.matrix[k][k];
-        }
+        unrolled!(forward(&self.entries, &mut right));
+        unrolled!(backward(&self.entries, &mut right));
         right
+    }
+
+    #[inline(always)]
+    fn forward<const POSITION: usize>(entries: &[f64; MAXIMUM_ENTRIES], right: &mut NodeValues) {
+        const { ThermalNetwork::<T>::ELIMINATION.forward.at(POSITION) }.apply_to_vector(entries, right);
+    }
+
+    #[inline(always)]
+    fn backward<const POSITION: usize>(entries: &[f64; MAXIMUM_ENTRIES], right: &mut NodeValues) {
+        const { ThermalNetwork::<T>::ELIMINATION.backward.at(POSITION) }.apply_to_vector(entries, right);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
-    fn three_node_chain() -> (ThermalNetwork, [LinkState; 3], [Node; 3]) {
-        let mut builder = NetworkBuilder::default();
-        let a = builder.node(1000.0);
-        let b = builder.node(500.0);
-        let c = builder.node(200.0);
-        builder.link(LinkPorts::between(a, b));
-        builder.link(LinkPorts::between(b, c));
-        builder.link(LinkPorts::to_surroundings(c));
-        let links =
-            [LinkState::conductance(20.0), LinkState::conductance(5.0), LinkState::to_fixed(2.0, 280.0)];
-        (builder.build(), links, [a, b, c])
+    const A: Node = Node::new(0);
+    const B: Node = Node::new(1);
+    const C: Node = Node::new(2);
+
+    /// Three masses in a row, the last one beside the surroundings, and a branch that is driven by other nodes than
+    /// those that exchange its heat.
+    #[derive(Debug)]
+    struct Chain;
+
+    impl Topology for Chain {
+        const NODES: usize = 3;
+        const LINKS: &'static [LinkPorts] = &[
+            LinkPorts::between(A, B),
+            LinkPorts::between(B, C),
+            LinkPorts::to_surroundings(C),
+            LinkPorts { loses: Some(C), gains: Some(A), hot: Some(A), cold: Some(B) },
+        ];
+        const KNOWN_FIRST: &'static [Node] = &[B];
+    }
+
+    fn chain() -> ThermalNetwork<Chain> {
+        let mut capacities = NodeValues::default();
+        capacities[..3].copy_from_slice(&[1000.0, 500.0, 200.0]);
+        ThermalNetwork::new(capacities)
+    }
+
+    fn links(branch_w_k: f64) -> [LinkState; 4] {
+        [
+            LinkState::conductance(20.0),
+            LinkState::conductance(5.0),
+            LinkState::to_fixed(2.0, 280.0),
+            LinkState { conductance_w_k: branch_w_k, hot_weight: 0.5, cold_weight: 1.0, offset_k: 150.0 },
+        ]
+    }
+
+    fn start() -> NodeValues {
+        let mut start = NodeValues::default();
+        start[..3].copy_from_slice(&[300.0, 290.0, 310.0]);
+        start
     }
 
     #[test]
     fn a_long_step_reaches_the_temperature_of_the_surroundings() {
-        let (network, links, _) = three_node_chain();
-        let end = network.factorise(&links, 1e12).advance(&[300.0; MAXIMUM_NODES], &[0.0; MAXIMUM_NODES]);
+        let end = chain().factorise(&links(0.0), 1e12).advance(&start(), &NodeValues::default());
         for temperature in &end[..3] {
             assert!((temperature - 280.0).abs() < 1e-6);
         }
@@ -341,27 +343,45 @@ mod tests {
 
     #[test]
     fn stored_heat_changes_by_exactly_what_crosses_the_boundary() {
-        let (network, links, nodes) = three_node_chain();
-        let start = [300.0, 290.0, 310.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        let mut sources = [0.0; MAXIMUM_NODES];
-        sources[nodes[0].index()] = 75.0;
-        let end = network.factorise(&links, 1.0).advance(&start, &sources);
-        let mut flows = [0.0; 3];
-        network.link_flows(&links, &end, &mut flows);
-        let residual = network.heat_gained_j(&start, &end) - (75.0 - flows[2]);
+        let (network, links) = (chain(), links(3.0));
+        let mut sources = NodeValues::default();
+        sources[A.index()] = 75.0;
+        let end = network.factorise(&links, 1.0).advance(&start(), &sources);
+        let flows = network.link_flows(&links, &end);
+        let residual = network.heat_gained_j(&start(), &end) - (75.0 - flows[2]);
         assert!(residual.abs() < 1e-9, "residual {residual} W");
     }
 
     #[test]
-    fn elimination_solves_what_a_dense_solver_solves() {
-        let (network, links, _) = three_node_chain();
-        let start = [300.0, 290.0, 310.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        let end = network.factorise(&links, 2.0).advance(&start, &[0.0; MAXIMUM_NODES]);
-        let dense = nalgebra::Matrix3::new(520.0, -20.0, 0.0, -20.0, 275.0, -5.0, 0.0, -5.0, 107.0);
-        let right = nalgebra::Vector3::new(500.0 * 300.0, 250.0 * 290.0, 100.0 * 310.0 + 560.0);
-        let reference = dense.lu().solve(&right).expect("regular");
+    fn a_source_acts_on_all_temperatures_as_the_difference_of_two_steps_says() {
+        let step = chain().factorise(&links(3.0), 2.0);
+        let mut sources = NodeValues::default();
+        sources[B.index()] = 1.0;
+        let (without, with) =
+            (step.advance(&start(), &NodeValues::default()), step.advance(&start(), &sources));
+        let response = step.response(&sources);
         for i in 0..3 {
-            assert!((end[i] - reference[i]).abs() < 1e-9);
+            assert!((with[i] - without[i] - response[i]).abs() < 1e-12);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn elimination_solves_what_a_dense_solver_solves(branch in 0.0..50.0_f64, step_s in 0.01..100.0_f64) {
+            let end = chain().factorise(&links(branch), step_s).advance(&start(), &NodeValues::default());
+            let rates = [1000.0, 500.0, 200.0].map(|capacity: f64| capacity / step_s);
+            let half = 0.5 * branch;
+            let dense = nalgebra::Matrix3::new(
+                rates[0] + 20.0 - half, -20.0 + branch, 0.0,
+                -20.0, rates[1] + 25.0, -5.0,
+                half, -5.0 - branch, rates[2] + 7.0,
+            );
+            let fixed = [150.0 * branch, 0.0, 560.0 - 150.0 * branch];
+            let right = nalgebra::Vector3::from_fn(|i, _| rates[i] * start()[i] + fixed[i]);
+            let reference = dense.lu().solve(&right).expect("regular");
+            for i in 0..3 {
+                prop_assert!((end[i] / reference[i] - 1.0).abs() < 1e-11);
+            }
         }
     }
 }

@@ -1,0 +1,1 @@
+"""Controllers compared over held-out trips."""

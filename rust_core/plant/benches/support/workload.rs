@@ -1,0 +1,157 @@
+//! What the benchmarks drive: stretches of built-in scenarios, prepared so that only the steps are timed.
+
+use hp_plant::command::{ACTUATORS, COMPRESSOR, Command, Connection, Demand, Member, RECIRCULATION, Scale};
+use hp_plant::config::library::{self, Kind};
+use hp_plant::control::heat_demand_commander;
+use hp_plant::plant::StepRecord;
+use hp_plant::simulation::{Experiment, Run};
+use std::hint::black_box;
+use std::sync::Arc;
+
+/// Commands of a stretch.
+pub enum Driver {
+    /// HPCU, part of what is timed.
+    RuleBased,
+    /// Commands made beforehand, one a second.
+    Prepared(Vec<Command>),
+}
+
+/// A stretch of a run.
+pub struct Segment {
+    experiment: Arc<Experiment>,
+    start: Run,
+    /// Number of steps.
+    pub steps: usize,
+    driver: Driver,
+}
+
+impl Segment {
+    /// Drives the stretch once; the sum of battery powers keeps the compiler honest.
+    pub fn replay(&self) -> f64 {
+        let mut run = self.start;
+        let mut sum = 0.0;
+        for step in 0..self.steps {
+            let record = self.step(&mut run, step);
+            sum += black_box(&record).battery_current_a;
+        }
+        sum
+    }
+
+    #[inline(always)]
+    fn step(&self, run: &mut Run, step: usize) -> StepRecord {
+        let command = match &self.driver {
+            Driver::RuleBased => self.experiment.rule_based_command(run),
+            Driver::Prepared(commands) => commands[step],
+        };
+        let disturbance = self.experiment.disturbance(run.steps);
+        run.steps += 1;
+        self.experiment.plant.step(&mut run.state, &command, &disturbance)
+    }
+}
+
+/// Whether the compressor runs in each step of a run with the HPCU.
+fn compressor_on(experiment: &Experiment) -> Vec<(Run, bool)> {
+    let mut run = experiment.start();
+    let mut steps = Vec::new();
+    loop {
+        let before = run;
+        let command = experiment.rule_based_command(&mut run);
+        let end = experiment.step(&mut run, &command);
+        steps.push((before, run.record.is_some_and(|record| record.refrigeration.running())));
+        if end.is_some() {
+            return steps;
+        }
+    }
+}
+
+/// All stretches of the paper's nine scenarios during which the compressor runs.
+pub fn compressor_on_segments() -> Vec<Segment> {
+    let mut segments = Vec::new();
+    for name in library::names(Kind::Scenario).iter().filter(|name| name.starts_with("jeffs2019/")) {
+        let experiment = Arc::new(Experiment::load(name, None, &[]).expect("built-in scenario"));
+        let steps = compressor_on(&experiment);
+        let mut from = 0;
+        while from < steps.len() {
+            let length = steps[from..].iter().take_while(|(_, on)| *on).count();
+            if length > 0 {
+                segments.push(Segment {
+                    experiment: Arc::clone(&experiment),
+                    start: steps[from].0,
+                    steps: length,
+                    driver: Driver::RuleBased,
+                });
+            }
+            from += length.max(1);
+        }
+    }
+    segments
+}
+
+/// Whole trips of all built-in scenarios under actions drawn uniformly each second, as by an agent that knows
+/// nothing: six connections, PTC and eleven levels of compressor power; everything else as the scenario has it.
+pub fn random_segments() -> Vec<Segment> {
+    let mut random = Random(0x9e37_79b9_7f4a_7c15);
+    let segment = |name: &&str| {
+        let experiment = Arc::new(Experiment::load(name, None, &[]).expect("built-in scenario"));
+        let (mut run, mut commands) = (experiment.start(), Vec::new());
+        loop {
+            let command = random_command(&experiment, &mut random);
+            commands.push(command);
+            if experiment.step(&mut run, &command).is_some() {
+                break;
+            }
+        }
+        Segment {
+            start: experiment.start(),
+            experiment,
+            steps: commands.len(),
+            driver: Driver::Prepared(commands),
+        }
+    };
+    library::names(Kind::Scenario).iter().map(segment).collect()
+}
+
+fn random_command(experiment: &Experiment, random: &mut Random) -> Command {
+    let parameters = &experiment.hpcu.parameters;
+    let ranges = &experiment.plant.ranges;
+    let mut connections = [Connection::Isolated; 6];
+    for member in Member::ALL {
+        connections[member as usize] = member.options()[random.below(member.options().len())];
+    }
+    let cooling = connections[Member::Cabin as usize] == Connection::Chiller;
+    let demand = Demand {
+        connections,
+        ptc_allowed: random.below(2) == 1,
+        recirculation: if cooling {
+            parameters.cooling_recirculation
+        } else {
+            parameters.heating_recirculation
+        },
+        blower_level: parameters.blower_level,
+        htc_flow_kg_s: parameters.htc_flow_kg_s,
+        chiller_flow_kg_s: parameters.chiller_flow_kg_s,
+        requests_w: heat_demand_commander::requests_w(&experiment.scenario.heat_demand, 0.0),
+        cabin_set_point_k: parameters.cabin_set_point_degc.kelvin(),
+        ..Demand::default()
+    };
+    let mut command = ranges.encode(&demand);
+    debug_assert_eq!(ACTUATORS[COMPRESSOR].scale, Scale::OffThenLogarithmic);
+    debug_assert_eq!(ACTUATORS[RECIRCULATION].name, "recirculation");
+    command.0[COMPRESSOR] = match random.below(11) {
+        0 => -1.0,
+        level => -0.9 + 1.9 * (level - 1) as f32 / 9.0,
+    };
+    command
+}
+
+/// Marsaglia's xorshift: repeatable numbers without a dependency.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, count: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 33) as usize % count
+    }
+}
