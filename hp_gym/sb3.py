@@ -1,7 +1,7 @@
 """The vector environment for stable-baselines3."""
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, Final
 
 import gymnasium as gym
 import numpy as np
@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 from stable_baselines3.common.vec_env.base_vec_env import VecEnv, VecEnvIndices
 
 from hp_gym.vector_env import EVHeatPumpVectorEnv
+
+DISCOMFORT: Final = "reward_discomfort"
+"""Name of the reward's part for discomfort."""
 
 
 class SB3VecEnv(VecEnv):
@@ -29,6 +32,8 @@ class SB3VecEnv(VecEnv):
         self._actions: NDArray[Any] = np.empty(0)
         self._returns = np.zeros(num_envs)
         self._lengths = np.zeros(num_envs, dtype=np.int64)
+        self.discomfort_rewards: NDArray[np.float64] = np.zeros(num_envs)
+        """The part of the last rewards that is for discomfort."""
         super().__init__(num_envs, self.venv.single_observation_space, self.venv.single_action_space)
 
     def reset(self) -> NDArray[np.float32]:
@@ -54,12 +59,14 @@ class SB3VecEnv(VecEnv):
         self._returns += rewards
         self._lengths += 1
         told: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        self.discomfort_rewards = infos[DISCOMFORT].copy()
         for index in np.flatnonzero(done).tolist():
             final = _one(infos["final_info"], index)
             final["terminal_observation"] = infos["final_obs"][index]
             final["TimeLimit.truncated"] = bool(truncated[index] and not terminated[index])
             final["episode"] = {"r": float(self._returns[index]), "l": int(self._lengths[index])}
             self._returns[index], self._lengths[index] = 0.0, 0
+            self.discomfort_rewards[index] = final[DISCOMFORT]
             told[index] = final
             self.reset_infos[index] = _one(infos, index)
         return observations, rewards.astype(np.float32), done, told

@@ -52,7 +52,9 @@ def executed(program: pathlib.Path, workload: str) -> tuple[int, dict[int, int],
             call = True
         elif match := re.match(r"(0x[0-9a-f]+|\+\d+|-\d+|\*)(?: \S+)? (\d+)$", line):
             place = match[1]
-            address = address if place == "*" else address + int(place) if place[0] in "+-" else int(place, 16)
+            address = (
+                address if place == "*" else address + int(place) if place[0] in "+-" else int(place, 16)
+            )
             if not call:
                 inside[address] += int(match[2]) if ours else 0
                 outside += 0 if ours else int(match[2])
@@ -70,13 +72,17 @@ def main() -> None:
     steps, counts, outside = executed(program, workload)
     # valgrind loads the program at a page of its own choice: the one where the addresses are instructions.
     lowest = min(address for address, count in counts.items() if count)
-    bases = (base for base in range(0, lowest, 0x1000) if all(a - base in names for a, n in counts.items() if n))
+    bases = (
+        base for base in range(0, lowest, 0x1000) if all(a - base in names for a, n in counts.items() if n)
+    )
     base = next(bases)
     groups: collections.Counter[str] = collections.Counter()
     for address, count in counts.items():
         if count:
             name = names[address - base]
-            group = next((key for key, form in GROUPS.items() if re.fullmatch(form, name)), "integer, branch, call")
+            group = next(
+                (key for key, form in GROUPS.items() if re.fullmatch(form, name)), "integer, branch, call"
+            )
             groups[group + (", packed" if name.endswith("pd") and group in list(GROUPS)[:4] else "")] += count
     groups["libraries (exp, log, pow, memcpy)"] = outside
     for group, count in sorted(groups.items(), key=lambda item: -item[1]):

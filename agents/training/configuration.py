@@ -98,13 +98,19 @@ class NormalisationSettings(_Table):
     trip stays the same.
     """
 
-    @field_validator("typical_cost")
+    comfort_weight: list[Pair] | None = None
+    """Ambient temperatures in degC, rising, and a factor on the reward's part for discomfort.
+
+    Multipliers of a constraint: comfort must hold in every climate, and some have more of it to spare.
+    """
+
+    @field_validator("typical_cost", "comfort_weight")
     @classmethod
     def _rises(cls, table: list[list[float]] | None) -> list[list[float]] | None:
         rows = table if table is not None else [[0.0, 1.0]]
         degc = [row[0] for row in rows]
         if not rows or degc != sorted(set(degc)) or min(row[1] for row in rows) <= 0.0:
-            message = "must be pairs of rising temperatures and costs above 0"
+            message = "must be pairs of rising temperatures and values above 0"
             raise ValueError(message)
         return table
 
@@ -126,8 +132,8 @@ class ImitationSettings(_Table):
 
     teacher: str = "hpcu-tuned"
     """Controller, by name or path."""
-    rounds: Count = 3
-    """In the first the teacher drives, in the others mostly the policy; the teacher says what it would do."""
+    rounds: Annotated[int, Field(ge=0)] = 3
+    """0 for no warm start. In the first the teacher drives, in the others mostly the policy."""
     environments: Count = 512
     steps: Count = 130
     """Decisions in each environment and round."""

@@ -15,7 +15,7 @@ AMBIENT_ROW: Final = "ambient_temperature_degc"
 
 
 class RewardScale:
-    """Factors on rewards: one for all, or less where a trip costs more because of its ambient temperature.
+    """How rewards count in training: a factor for all or by ambient temperature, and one on discomfort alone.
 
     Args:
         training: The configuration.
@@ -25,26 +25,39 @@ class RewardScale:
     """
 
     def __init__(self, training: Training) -> None:
-        self._factor = training.normalisation.reward_scale
-        table = training.normalisation.typical_cost
-        self._costs: NDArray[np.float64] | None = None
-        if table is not None:
-            self._costs = np.array(table)
+        normalisation = training.normalisation
+        self._factor = normalisation.reward_scale
+        self._costs = _table(normalisation.typical_cost)
+        self._comfort = _table(normalisation.comfort_weight)
+        self._by_ambient = normalisation.typical_cost is not None or normalisation.comfort_weight is not None
+        if self._by_ambient:
             self._row, self._low_degc, self._high_degc = _ambient_row(training)
 
     @property
     def is_one(self) -> bool:
         """Whether rewards stay as they are."""
-        return self._costs is None and self._factor == 1.0
+        return not self._by_ambient and self._factor == 1.0
 
     def factors(self, observations: NDArray[np.float32]) -> NDArray[np.float64]:
-        """Returns the factor of each environment that gave these observations; the same all trip long."""
-        if self._costs is None:
-            return np.full(len(observations), self._factor)
+        """Returns two rows of factors, on all and on discomfort besides, for environments that gave these.
+
+        They are the same all trip long.
+        """
+        if not self._by_ambient:
+            return np.tile([[self._factor], [1.0]], (1, len(observations)))
         share = 0.5 * (observations[:, self._row] + 1.0)
         ambient_degc = self._low_degc + share * (self._high_degc - self._low_degc)
-        points: NDArray[np.float64] = np.interp(ambient_degc, self._costs[:, 0], self._costs[:, 1])
-        return self._factor / points
+        cost = np.interp(ambient_degc, self._costs[:, 0], self._costs[:, 1])
+        comfort = np.interp(ambient_degc, self._comfort[:, 0], self._comfort[:, 1])
+        return np.stack([self._factor / cost, comfort])
+
+
+def scaled(
+    rewards: NDArray[np.float64], discomfort: NDArray[np.float64], factors: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Returns rewards as they count in training; `discomfort` is the part of them that is for discomfort."""
+    counted: NDArray[np.float64] = factors[0] * (rewards + (factors[1] - 1.0) * discomfort)
+    return counted
 
 
 class ScaledReward(VecEnvWrapper):
@@ -55,10 +68,11 @@ class ScaledReward(VecEnvWrapper):
         scale: Gives the factors.
     """
 
-    def __init__(self, venv: VecEnv, scale: RewardScale) -> None:
+    def __init__(self, venv: SB3VecEnv, scale: RewardScale) -> None:
         super().__init__(venv)
+        self._inner = venv
         self._scale = scale
-        self.factors = np.zeros(venv.num_envs)
+        self.factors = np.zeros((2, venv.num_envs))
         """Of the trips under way."""
 
     def reset(self) -> Any:
@@ -70,10 +84,15 @@ class ScaledReward(VecEnvWrapper):
     def step_wait(self) -> Any:
         """Drives all environments on."""
         observations, rewards, done, infos = self.venv.step_wait()
-        scaled = (rewards * self.factors).astype(np.float32)
+        counted = scaled(rewards, self._inner.discomfort_rewards, self.factors).astype(np.float32)
         # Of the trip that has begun, where one has ended.
         self.factors = self._scale.factors(np.asarray(observations))
-        return observations, scaled, done, infos
+        return observations, counted, done, infos
+
+
+def _table(rows: list[list[float]] | None) -> NDArray[np.float64]:
+    """Ambient temperatures and values; 1 everywhere by default."""
+    return np.array(rows if rows is not None else [[0.0, 1.0]])
 
 
 def _ambient_row(training: Training) -> tuple[int, float, float]:
@@ -94,14 +113,13 @@ def make(training: Training) -> VecEnv:
         ConfigurationError: An argument of the environment is not accepted.
     """
     normalisation = training.normalisation
-    envs: VecEnv = SB3VecEnv(
+    plain = SB3VecEnv(
         training.environments.number,
         threads=training.environments.threads,
         **training.environment.model_dump(),
     )
     scale = RewardScale(training)
-    if not scale.is_one:
-        envs = ScaledReward(envs, scale)
+    envs: VecEnv = plain if scale.is_one else ScaledReward(plain, scale)
     if normalisation.observations or normalisation.rewards:
         envs = VecNormalize(
             envs,
@@ -146,9 +164,9 @@ def get_state(envs: VecEnv) -> dict[str, Any]:
         "episode_returns": torch.from_numpy(returns),
         "episode_lengths": torch.from_numpy(lengths),
     }
-    scaled = _scaled(envs)
-    if scaled is not None:
-        told["reward_factors"] = torch.from_numpy(scaled.factors.copy())
+    wrapped = _scaled(envs)
+    if wrapped is not None:
+        told["reward_factors"] = torch.from_numpy(wrapped.factors.copy())
     wrapper = normaliser(envs)
     if wrapper is not None:
         told["returns"] = torch.from_numpy(wrapper.returns.copy())
@@ -176,9 +194,9 @@ def set_state(envs: VecEnv, told: dict[str, Any]) -> None:
     data = told["states"].numpy().tobytes()
     inner.venv.set_state([data[end - size : end] for end, size in zip(ends, told["sizes"], strict=True)])
     inner.set_episodes_so_far(told["episode_returns"].numpy(), told["episode_lengths"].numpy())
-    scaled = _scaled(envs)
-    if scaled is not None:
-        scaled.factors = told["reward_factors"].numpy().copy()
+    wrapped = _scaled(envs)
+    if wrapped is not None:
+        wrapped.factors = told["reward_factors"].numpy().copy()
     wrapper = normaliser(envs)
     if wrapper is not None:
         wrapper.returns = told["returns"].numpy().copy()

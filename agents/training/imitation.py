@@ -14,6 +14,7 @@ from stable_baselines3.common.vec_env import VecNormalize
 
 from agents.training import environments
 from agents.training.configuration import ImitationSettings, MaskablePPOTraining, PPOTraining
+from hp_gym.sb3 import DISCOMFORT
 from hp_gym.vector_env import EVHeatPumpVectorEnv
 
 OnPolicyTraining: TypeAlias = PPOTraining | MaskablePPOTraining
@@ -111,8 +112,9 @@ def demonstrate(
         observations.append(seen)
         actions.append(wanted)
         factors = scaling.factors(seen)
-        seen, reward, terminated, _, _ = envs.step(np.where(disturbed, envs.action_space.sample(), taken))
-        rewards.append(reward * factors)
+        seen, reward, terminated, _, infos = envs.step(np.where(disturbed, envs.action_space.sample(), taken))
+        # A trip's last second is missing from its discomfort: what it weighs does not matter to a warm start.
+        rewards.append(environments.scaled(reward, infos[DISCOMFORT], factors))
         ends.append(terminated)
     envs.close()
     returns, known = _returns(np.array(rewards), np.array(ends), training.hyperparameters.gamma)
