@@ -53,7 +53,7 @@ def single_table(speed: Speed) -> Table:
             f"{_REAL_TIME_US / step.median:,.0f} times real time",
         )
     if speed.fastsim_step_us is None:
-        table.add_row("FASTSim 3", "not installed", "", "uv run --with fastsim")
+        table.add_row("FASTSim 3", "not installed", "", "uv run --extra speed")
     else:
         step = speed.fastsim_step_us
         ratio = f"plant step {step.median / plant_us:.1f} times as fast"
