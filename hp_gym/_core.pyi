@@ -17,6 +17,7 @@ __all__ = [
     "config_text",
     "names",
     "observation_table",
+    "plant_step_seconds",
     "reward_parts",
     "signals",
     "totals",

@@ -59,7 +59,8 @@ class SB3VecEnv(VecEnv):
         self._returns += rewards
         self._lengths += 1
         told: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
-        self.discomfort_rewards = infos[DISCOMFORT].copy()
+        # Where all trips have ended, the parts are in their last infos only.
+        self.discomfort_rewards = np.array(infos.get(DISCOMFORT, np.zeros(self.num_envs)))
         for index in np.flatnonzero(done).tolist():
             final = _one(infos["final_info"], index)
             final["terminal_observation"] = infos["final_obs"][index]

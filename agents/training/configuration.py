@@ -244,7 +244,13 @@ class RecurrentPPOTraining(_OnPolicy):
 
     algorithm: Literal["recurrent-ppo"]
     hyperparameters: RecurrentPPOHyperparameters
-    imitation: None = None
+
+    @model_validator(mode="after")
+    def _starts_cold(self) -> Self:
+        if self.imitation is not None and self.imitation.rounds:
+            message = f"imitation.rounds is {self.imitation.rounds}, but must be 0 for recurrent-ppo"
+            raise ValueError(message)
+        return self
 
 
 class SACTraining(_Common):
