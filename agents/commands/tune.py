@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def tune(
     *,
     out: Annotated[Path, typer.Option(help="Folder for the two controller files.")] = Path("out/tune"),
-    trials: Annotated[int, typer.Option(min=10, help="Trials of the search in each ambient band.")] = 200,
+    trials: Annotated[int, typer.Option(min=10, help="Trials of the search in each ambient band.")] = 120,
     trips: Annotated[int, typer.Option(min=1, help="Training trips in each ambient band.")] = 128,
     seed: Annotated[int, typer.Option(min=0, help="Seed of trips and search.")] = 0,
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,

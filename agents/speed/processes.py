@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import os
 import sys
@@ -45,7 +46,8 @@ def pure_compute_gain(seconds: float) -> tuple[Callable[[], float], Callable[[],
 def bytes_per_environment() -> float | None:
     """Returns by how much an environment of a vector environment lets the resident set grow [bytes].
 
-    Gymnasium's batched spaces count, what all share does not. None where the system does not tell.
+    Gymnasium's batched spaces count; what all share, and what the allocator keeps for later, does not. None
+    where the system does not tell.
     """
     if not sys.platform.startswith("linux"):
         return None
@@ -74,5 +76,8 @@ def _resident_bytes(environments: int) -> tuple[int, object]:
     for _ in range(3):
         envs.step(np.zeros(envs.action_space.shape or (), dtype=np.int64))
     gc.collect()
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
+    if trim is not None:
+        trim(0)
     pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE"), envs

@@ -113,7 +113,7 @@ def demonstrate(
         actions.append(wanted)
         factors = scaling.factors(seen)
         seen, reward, terminated, _, infos = envs.step(np.where(disturbed, envs.action_space.sample(), taken))
-        # A trip's last second is missing from its discomfort: what it weighs does not matter to a warm start.
+        # Of a trip's last decision the part is not told here; what it weighs does not matter to a warm start.
         rewards.append(environments.scaled(reward, infos.get(DISCOMFORT, np.zeros(number)), factors))
         ends.append(terminated)
     envs.close()

@@ -29,7 +29,7 @@ class Band:
 
 
 BANDS: Final = (Band(-20, -10), Band(-10, 0), Band(0, 10), Band(10, 20), Band(20, 40))
-"""All of the training distribution; the edges are those of the benchmark's climate bands."""
+"""All of the training distribution, cut where the benchmark cuts; an edge belongs to the colder band here."""
 
 
 @contextmanager
