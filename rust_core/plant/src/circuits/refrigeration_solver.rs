@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 
 use super::refrigeration_cycle::{CoolantSides, CyclePoint, RefrigerationCycle, variables};
 use crate::numerics::dual::Real;
-use crate::numerics::root::{bracketed_root, maximum};
+use crate::numerics::root::{bracketed_root, expand, maximum};
+use crate::numerics::three_equations::{Inverse, largest};
 
 /// Largest balance error [K] or scaled limit error of a solution.
 const RESIDUAL_TOLERANCE: f64 = 1e-8;
@@ -421,54 +422,5 @@ impl Solver<'_> {
         let evaporating =
             bracketed_root(residual, (low, f_low), (high, residual(high)), 1e-1 * RESIDUAL_TOLERANCE);
         at(evaporating, condensing_at(evaporating))
-    }
-}
-
-/// Walks from `from` in doubling steps until the function reports success; returns the place and its value.
-fn expand(from: f64, first_step: f64, function: impl Fn(f64) -> (f64, bool)) -> (f64, f64) {
-    let mut step = first_step;
-    loop {
-        let (value, done) = function(from + step);
-        if done || step.abs() > 1e9 {
-            return (from + step, value);
-        }
-        step *= 2.0;
-    }
-}
-
-/// Largest magnitude; not a number where one of them is none.
-#[inline]
-fn largest(values: [f64; 3]) -> f64 {
-    let [a, b, c] = values.map(f64::abs);
-    let pair = if a > b || a.is_nan() { a } else { b };
-    if pair > c || pair.is_nan() { pair } else { c }
-}
-
-/// Inverse of a matrix of three rows, by Cramer's rule.
-struct Inverse {
-    columns: [[f64; 3]; 3],
-    per_determinant: f64,
-}
-
-impl Inverse {
-    /// `None` for a singular matrix.
-    #[inline]
-    fn of(rows: [[f64; 3]; 3]) -> Option<Self> {
-        let [a, b, c] = rows;
-        let cross = |u: [f64; 3], v: [f64; 3]| {
-            [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
-        };
-        let columns = [cross(b, c), cross(c, a), cross(a, b)];
-        let determinant = a[0] * columns[0][0] + a[1] * columns[0][1] + a[2] * columns[0][2];
-        (determinant != 0.0).then_some(Self { columns, per_determinant: determinant.recip() })
-    }
-
-    /// The step that makes errors vanish where the equations are straight.
-    #[inline]
-    fn step(&self, errors: [f64; 3]) -> [f64; 3] {
-        let [u, v, w] = self.columns;
-        std::array::from_fn(|k| {
-            -(errors[0] * u[k] + errors[1] * v[k] + errors[2] * w[k]) * self.per_determinant
-        })
     }
 }

@@ -6,3 +6,4 @@ mod elimination;
 pub mod interpolation;
 pub mod root;
 pub mod thermal_network;
+pub mod three_equations;

@@ -52,9 +52,30 @@ pub fn maximum(function: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f6
     0.5 * (low + high)
 }
 
+/// Walks from `from` in doubling steps until the function reports success; returns the place and its value.
+pub fn expand(from: f64, first_step: f64, function: impl Fn(f64) -> (f64, bool)) -> (f64, f64) {
+    let mut step = first_step;
+    loop {
+        let (value, done) = function(from + step);
+        if done || step.abs() > 1e9 {
+            return (from + step, value);
+        }
+        step *= 2.0;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn doubling_steps_reach_a_place_on_either_side() {
+        for (step, beyond) in [(1.0, 100.0), (-1.0, -100.0)] {
+            let (place, value) = expand(0.0, step, |x| (2.0 * x, x / beyond >= 1.0));
+            assert!(place / beyond >= 1.0 && place / beyond <= 2.0, "{place}");
+            assert_eq!(value, 2.0 * place);
+        }
+    }
 
     #[test]
     fn roots_are_found_for_rising_falling_and_kinked_functions() {
