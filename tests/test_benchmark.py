@@ -12,9 +12,11 @@ from typer.testing import CliRunner, Result
 
 import hp_gym
 from agents.benchmark import files, grid, matched, summary
+from agents.benchmark.drive import drive, trajectories
 from agents.benchmark.grid import GridError
 from agents.benchmark.results import FRONT_COLUMNS, IDENTITY, KPIS
 from agents.cli import app
+from agents.controllers import resolve
 
 GRID = """
 description = "Two climates, one short cycle"
@@ -133,6 +135,23 @@ def test_hpcu_drives_what_simulate_drives(runs: pd.DataFrame, place: Path, scena
     assert {name: row[name] for name in names} == {name: totals[name] for name in names}
     # One is summed up in hours, the other in seconds.
     assert row["discomfort_k"] == pytest.approx(totals["discomfort_k"], rel=1e-12)
+
+
+def test_a_trajectory_is_the_trip_of_the_table_second_by_second(place: Path, tmp_path: Path) -> None:
+    """The shipped policy decides every ten seconds; what is drawn of it must still be integrable."""
+    trips = grid.load(str(place / "small.toml"))
+    scenarios = [one for one in trips.scenarios if one.name in ("5-nedc-dark", "minus5-nedc-garage")]
+    paths = trips.write(tmp_path)
+    policy, *_ = resolve("ppo")
+    assert policy.environment["control_interval_s"] > 1
+    tables = trajectories(policy, scenarios, paths)
+    for row in drive(policy, scenarios, paths):
+        table = tables[row["scenario"]]
+        np.testing.assert_array_equal(table["time_s"], np.arange(row["duration_s"] + 1))
+        drawn_kwh = table["battery_chemical_power_w"].sum() / 3.6e6
+        assert drawn_kwh == pytest.approx(row["chemical_energy_kwh"], rel=1e-9)
+        for column, kpi in (("compressor_power_w", "compressor"), ("ptc_power_w", "ptc")):
+            assert table[column].sum() / 3.6e6 == pytest.approx(row[f"{kpi}_energy_kwh"], rel=1e-9, abs=1e-12)
 
 
 def test_summary_is_the_sums_and_means_of_the_runs(done: dict[str, Any], runs: pd.DataFrame) -> None:

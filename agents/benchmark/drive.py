@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections import defaultdict
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
@@ -119,23 +120,33 @@ def _drive_group(
 def trajectories(
     controller: Controller, scenarios: Sequence[Scenario], files: Mapping[str, Path]
 ) -> dict[str, pd.DataFrame]:
-    """Signals of trips, one row a control interval, the start included, by the scenario's name."""
+    """Signals of trips second by second, the start included, by the scenario's name.
+
+    A controller that decides less often keeps its action in between, so that these are the trips that
+    `drive` drives.
+    """
     import pandas as pd
 
     from hp_gym.signals import NAMES
 
+    interval_s = int(controller.environment.get("control_interval_s", 1))
+    by_second = replace(controller, environment={**controller.environment, "control_interval_s": 1})
     tables = {}
     for scenario in scenarios:
-        env = _environment(controller, [scenario], files)
+        env = _environment(by_second, [scenario], files)
         try:
             observations, _ = env.reset(seed=_ENV_SEED)
             act = controller.begin(env)
             rows = [_look(env)]
             over = False
             while not over:
-                observations, _, terminated, _, _ = env.step(act(observations))
-                rows.append(_look(env))
-                over = bool(terminated[0])
+                action = act(observations)
+                for _ in range(interval_s):
+                    observations, _, terminated, _, _ = env.step(action)
+                    rows.append(_look(env))
+                    over = bool(terminated[0])
+                    if over:
+                        break
         finally:
             env.close()
         tables[scenario.name] = pd.DataFrame(np.stack(rows), columns=list(NAMES))
