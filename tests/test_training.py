@@ -49,6 +49,7 @@ SAC = [
     "environment.continuous=true",
     "hyperparameters={buffer_size = 1000, learning_starts = 64, batch_size = 32, gamma = 0.9}",
 ]
+CONSTRAINED = "comfort_constraint={interval_decisions = 300, ambient_degc = [-10, 20], trips = 4}"
 RECURRENT = ["algorithm=recurrent-ppo", "hyperparameters.lstm_hidden_size=8"]
 
 
@@ -139,6 +140,7 @@ class _Killed(BaseException):
         pytest.param(["algorithm=maskable-ppo"], id="maskable-ppo"),
         pytest.param([NORMALISED], id="normalised"),
         pytest.param(["normalisation.typical_cost=[[-20, 60], [20, 3], [40, 20]]"], id="typical cost"),
+        pytest.param([CONSTRAINED, NORMALISED], id="constrained"),
         pytest.param([*SAC, NORMALISED], id="sac"),
         pytest.param(RECURRENT, id="recurrent-ppo"),
     ],
@@ -310,6 +312,8 @@ def test_a_full_disk_leaves_what_was_written_before(config: Path, tmp_path: Path
         ("environment.actions=['wings']", "unknown action `wings`"),
         ("environment.reward=greed", "unknown reward `greed`"),
         ("validation.distribution=mars", "unknown distribution of episodes `mars`"),
+        (CONSTRAINED.replace("-10, 20", "20, -10"), "must be rising temperatures"),
+        (CONSTRAINED.replace("trips = 4", "trips = 4, rules = 'nobody'"), "unknown controller `nobody`"),
         ("nonsense", "`nonsense` must have the form key=value"),
     ],
 )

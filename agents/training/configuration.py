@@ -115,6 +115,35 @@ class NormalisationSettings(_Table):
         return table
 
 
+class ComfortConstraintSettings(_Table):
+    """Comfort that must hold in every climate: discomfort weighs more where it exceeds that of rules."""
+
+    interval_decisions: Count
+    """Between two looks at fixed trips, after each of which the weight moves."""
+    ambient_degc: Annotated[list[float], Field(min_length=1)]
+    """Ambient temperatures in degC, rising; between them weights are interpolated."""
+    rules: str = "hpcu"
+    """Controller that must not be more comfortable, by name or path."""
+    margin_k: NotNegative = 0.0
+    """By how much the policy must be more comfortable."""
+    margin_share: Share = 1.0
+    """Largest margin as a share of the rules' discomfort."""
+    trips: Count = 256
+    seed: Annotated[int, Field(ge=0)] = 2_000_000
+    step_per_k: Positive = 0.2
+    """Change of the weight for each Kelvin of violation (at most one) at each look."""
+    largest: Positive = 3.0
+    """Largest addition to the weight, where the condition cannot be met."""
+
+    @field_validator("ambient_degc")
+    @classmethod
+    def _rises(cls, degc: list[float]) -> list[float]:
+        if degc != sorted(set(degc)):
+            message = "must be rising temperatures"
+            raise ValueError(message)
+        return degc
+
+
 class ValidationSettings(_Table):
     """How the policy is watched: the same trips every time, driven without chance."""
 
@@ -201,6 +230,7 @@ class _Common(_Table):
     learning_rate: LearningRate
     network: Network
     normalisation: NormalisationSettings = NormalisationSettings()
+    comfort_constraint: ComfortConstraintSettings | None = None
     validation: ValidationSettings
 
 

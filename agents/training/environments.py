@@ -29,7 +29,11 @@ class RewardScale:
         self._factor = normalisation.reward_scale
         self._costs = _table(normalisation.typical_cost)
         self._comfort = _table(normalisation.comfort_weight)
-        self._by_ambient = normalisation.typical_cost is not None or normalisation.comfort_weight is not None
+        constraint = training.comfort_constraint
+        self._constrained_degc = np.array([0.0] if constraint is None else constraint.ambient_degc)
+        self._multipliers = np.zeros(len(self._constrained_degc))
+        tables = (normalisation.typical_cost, normalisation.comfort_weight, constraint)
+        self._by_ambient = any(table is not None for table in tables)
         if self._by_ambient:
             self._row, self._low_degc, self._high_degc = _ambient_row(training)
 
@@ -37,6 +41,10 @@ class RewardScale:
     def is_one(self) -> bool:
         """Whether rewards stay as they are."""
         return not self._by_ambient and self._factor == 1.0
+
+    def set_multipliers(self, multipliers: NDArray[np.float64]) -> None:
+        """Sets what the comfort constraint adds to the weight of discomfort in trips from now on."""
+        self._multipliers = multipliers
 
     def factors(self, observations: NDArray[np.float32]) -> NDArray[np.float64]:
         """Returns two rows of factors, on all and on discomfort besides, for environments that gave these.
@@ -49,7 +57,8 @@ class RewardScale:
         ambient_degc = self._low_degc + share * (self._high_degc - self._low_degc)
         cost = np.interp(ambient_degc, self._costs[:, 0], self._costs[:, 1])
         comfort = np.interp(ambient_degc, self._comfort[:, 0], self._comfort[:, 1])
-        return np.stack([self._factor / cost, comfort])
+        constrained = np.interp(ambient_degc, self._constrained_degc, self._multipliers)
+        return np.stack([self._factor / cost, comfort + constrained])
 
 
 def scaled(
@@ -71,14 +80,14 @@ class ScaledReward(VecEnvWrapper):
     def __init__(self, venv: SB3VecEnv, scale: RewardScale) -> None:
         super().__init__(venv)
         self._inner = venv
-        self._scale = scale
+        self.scale = scale
         self.factors = np.zeros((2, venv.num_envs))
         """Of the trips under way."""
 
     def reset(self) -> Any:
         """Begins trips."""
         observations = self.venv.reset()
-        self.factors = self._scale.factors(np.asarray(observations))
+        self.factors = self.scale.factors(np.asarray(observations))
         return observations
 
     def step_wait(self) -> Any:
@@ -86,7 +95,7 @@ class ScaledReward(VecEnvWrapper):
         observations, rewards, done, infos = self.venv.step_wait()
         counted = scaled(rewards, self._inner.discomfort_rewards, self.factors).astype(np.float32)
         # Of the trip that has begun, where one has ended.
-        self.factors = self._scale.factors(np.asarray(observations))
+        self.factors = self.scale.factors(np.asarray(observations))
         return observations, counted, done, infos
 
 
@@ -102,7 +111,7 @@ def _ambient_row(training: Training) -> tuple[int, float, float]:
     for index, (name, _, low, high, _) in enumerate(episode.observation_rows()):
         if name == AMBIENT_ROW:
             return index, low, high
-    message = f"normalisation.typical_cost needs {AMBIENT_ROW} among the observations"
+    message = f"weights by ambient temperature need {AMBIENT_ROW} among the observations"
     raise TrainingConfigurationError(message)
 
 
@@ -144,7 +153,8 @@ def normaliser(envs: VecEnv) -> VecNormalize | None:
     return envs if isinstance(envs, VecNormalize) else None
 
 
-def _scaled(envs: VecEnv) -> ScaledReward | None:
+def scaled_reward(envs: VecEnv) -> ScaledReward | None:
+    """Returns the wrapper that scales rewards, if there is one."""
     while isinstance(envs, VecEnvWrapper):
         if isinstance(envs, ScaledReward):
             return envs
@@ -164,7 +174,7 @@ def get_state(envs: VecEnv) -> dict[str, Any]:
         "episode_returns": torch.from_numpy(returns),
         "episode_lengths": torch.from_numpy(lengths),
     }
-    wrapped = _scaled(envs)
+    wrapped = scaled_reward(envs)
     if wrapped is not None:
         told["reward_factors"] = torch.from_numpy(wrapped.factors.copy())
     wrapper = normaliser(envs)
@@ -194,7 +204,7 @@ def set_state(envs: VecEnv, told: dict[str, Any]) -> None:
     data = told["states"].numpy().tobytes()
     inner.venv.set_state([data[end - size : end] for end, size in zip(ends, told["sizes"], strict=True)])
     inner.set_episodes_so_far(told["episode_returns"].numpy(), told["episode_lengths"].numpy())
-    wrapped = _scaled(envs)
+    wrapped = scaled_reward(envs)
     if wrapped is not None:
         wrapped.factors = told["reward_factors"].numpy().copy()
     wrapper = normaliser(envs)

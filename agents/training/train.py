@@ -16,6 +16,7 @@ from torch.utils.tensorboard.writer import SummaryWriter
 
 from agents.output import progress_console
 from agents.training import algorithms, checkpoint, environments, imitation
+from agents.training.comfort import ComfortConstraint
 from agents.training.configuration import MaskablePPOTraining, PPOTraining, Training
 from agents.training.run_folder import RunFolder
 from agents.training.validation import Figures, Validation
@@ -61,10 +62,10 @@ def start(training: Training, name: str, seed: int, out: Path) -> Outcome:
     """
     # Before the folder is made, so that a wrong configuration leaves nothing behind.
     model = _model(training, seed)
-    rules = Validation(training).of_rules()
+    notes = _first_notes(training)
     folder = RunFolder(out)
     folder.create(training, name, seed)
-    return _learn(Run(training, name, seed, folder), model, {"rules": asdict(rules)})
+    return _learn(Run(training, name, seed, folder), model, notes)
 
 
 def resume(out: Path) -> Outcome:
@@ -81,7 +82,7 @@ def resume(out: Path) -> Outcome:
     found = folder.latest_checkpoint()
     run = Run(training, name, seed, folder)
     if found is None:
-        return _learn(run, model, {"rules": asdict(Validation(training).of_rules())})
+        return _learn(run, model, _first_notes(training))
     path, content = found
     checkpoint.restore(content, model, path)
     progress_console.print(f"Going on from {model.num_timesteps:,} decisions.")
@@ -91,6 +92,14 @@ def resume(out: Path) -> Outcome:
 def _model(training: Training, seed: int) -> BaseAlgorithm:
     torch.set_num_threads(training.torch_threads)
     return algorithms.make(training, environments.make(training), seed)
+
+
+def _first_notes(training: Training) -> dict[str, Any]:
+    """What the rules do, before anything is learned."""
+    notes: dict[str, Any] = {"rules": asdict(Validation(training).of_rules())}
+    if training.comfort_constraint is not None:
+        notes["comfort"] = ComfortConstraint.begin(training, training.comfort_constraint).notes()
+    return notes
 
 
 def _learn(run: Run, model: BaseAlgorithm, notes: dict[str, Any]) -> Outcome:

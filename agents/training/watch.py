@@ -11,8 +11,10 @@ from agents.output import progress_console
 from agents.policies import PolicyEnvironment, SavedPolicy, save
 from agents.policies.from_sb3 import from_sb3
 from agents.training import checkpoint, environments
+from agents.training.comfort import ComfortConstraint
 from agents.training.configuration import Training
 from agents.training.run_folder import RunFolder
+from agents.training.trips import Decide
 from agents.training.validation import Figures, Validation
 from hp_gym.files import atomic_write
 
@@ -41,7 +43,8 @@ class Watch(BaseCallback):
         run: The run.
         progress: Bar to move.
         task: The bar's task.
-        notes: What was remembered at a checkpoint; `rules`, the figures of the HPCU, from the beginning.
+        notes: What was remembered at a checkpoint; from the beginning `rules`, the figures of the HPCU, and
+            `comfort`, where comfort is constrained.
     """
 
     def __init__(
@@ -72,6 +75,10 @@ class Watch(BaseCallback):
         self._began_s = perf_counter()
         self._decisions_at_start = 0
         self._latest_checkpoint: int | None = None
+        constraint = run.training.comfort_constraint
+        self._comfort = None
+        if constraint is not None:
+            self._comfort = ComfortConstraint(run.training, constraint, notes["comfort"])
 
     @property
     def history(self) -> list[dict[str, Any]]:
@@ -85,6 +92,7 @@ class Watch(BaseCallback):
 
     def _on_training_start(self) -> None:
         self._decisions_at_start = self.model.num_timesteps
+        self._weigh_comfort()
         self._began_s = perf_counter()
         self._write_status("running")
         self._show()
@@ -92,6 +100,8 @@ class Watch(BaseCallback):
     def _on_rollout_start(self) -> None:
         decisions = self.model.num_timesteps
         self._anneal_entropy()
+        if self._comfort is not None and self._comfort.is_due(decisions):
+            self._hold_comfort(self._comfort)
         if decisions >= self._next_validation:
             self._next_validation = decisions + self._training.validation.interval_decisions
             self._validate()
@@ -135,11 +145,8 @@ class Watch(BaseCallback):
 
     def _validate(self) -> None:
         began_s = perf_counter()
-        policy = None if self._training.algorithm == "recurrent-ppo" else self._policy()
-        if policy is not None:
-            figures = self._validation.of_policy(policy.predict, masked=policy.needs_masks)
-        else:
-            figures = self._validation.of_policy(_Recurrent(self.model, self.training_env), masked=False)
+        decide, masked = self._decide()
+        figures = self._validation.of_policy(decide, masked=masked)
         earlier = [row["score"] for row in self._history]
         row = {"decisions": self.model.num_timesteps, "wall_s": round(self.wall_s(), 1), **asdict(figures)}
         self._history.append(row | {f"hpcu_{key}": value for key, value in asdict(self._rules).items()})
@@ -155,6 +162,31 @@ class Watch(BaseCallback):
             f"{self.model.num_timesteps:,} decisions, {self.wall_s():.0f} s: {self._figures(figures)}",
             soft_wrap=True,
         )
+
+    def _hold_comfort(self, comfort: ComfortConstraint) -> None:
+        began_s = perf_counter()
+        decide, masked = self._decide()
+        excess_k = comfort.update(self.model.num_timesteps, decide, masked=masked)
+        self._weigh_comfort()
+        assert self._training.comfort_constraint is not None
+        degc = self._training.comfort_constraint.ambient_degc
+        for ambient_degc, excess, multiplier in zip(degc, excess_k, comfort.multipliers, strict=True):
+            self.logger.record(f"comfort/excess_k_at_{ambient_degc:g}_degc", float(excess))
+            self.logger.record(f"comfort/multiplier_at_{ambient_degc:g}_degc", float(multiplier))
+        self._validation_s += perf_counter() - began_s
+
+    def _weigh_comfort(self) -> None:
+        if self._comfort is not None:
+            scaled = environments.scaled_reward(self.training_env)
+            assert scaled is not None
+            scaled.scale.set_multipliers(self._comfort.multipliers)
+
+    def _decide(self) -> tuple[Decide, bool]:
+        """The policy without chance, and whether it needs masks."""
+        if self._training.algorithm == "recurrent-ppo":
+            return _Recurrent(self.model, self.training_env), False
+        policy = self._policy()
+        return policy.predict, policy.needs_masks
 
     def _policy(self) -> SavedPolicy:
         return from_sb3(
@@ -178,6 +210,7 @@ class Watch(BaseCallback):
         notes = {
             "history": self._history,
             "rules": asdict(self._rules),
+            "comfort": self._comfort.notes() if self._comfort is not None else {},
             "next_validation": self._next_validation,
             "next_checkpoint": self._next_checkpoint,
             "wall_s": self.wall_s(),
