@@ -350,21 +350,19 @@ def test_front_settings_move_ambient_bands_too(tmp_path: Path) -> None:
         "controller.htc_set_point_degc = 80.0\ncontroller.battery.heat_up_to_degc = 5.0\n",
         encoding="utf-8",
     )
-    front = grid.Front.model_construct(
-        family=str(family), cabin_offsets_k=(-2.0,), htc_offsets_k=(-20.0, 20.0)
-    )
+    front = grid.Front(family=str(family), cabin_offsets_k=(-2.0,), htc_offsets_k=(-20.0, 20.0))
     made = fronts.settings(front, tmp_path / "made")
-    assert [setting.htc_set_point_degc for setting in made] == [40.0, 80.0]
-    assert [setting.cabin_set_point_degc for setting in made] == [20.0, 20.0]
-    bands = [
+    written = [
         fronts._values(setting.controller.environment["overrides"]["scenario.controller"]) for setting in made
     ]
-    assert [values["ambient_bands"][0]["controller"]["htc_set_point_degc"] for values in bands] == [
+    assert [values["cabin_set_point_degc"] for values in written] == [20.0, 20.0]
+    assert [values["htc_set_point_degc"] for values in written] == [40.0, 80.0]
+    assert [values["ambient_bands"][0]["controller"]["htc_set_point_degc"] for values in written] == [
         60.0,
         90.0,
     ]
     assert all(
-        values["ambient_bands"][0]["controller"]["battery"] == {"heat_up_to_degc": 5.0} for values in bands
+        values["ambient_bands"][0]["controller"]["battery"] == {"heat_up_to_degc": 5.0} for values in written
     )
 
 

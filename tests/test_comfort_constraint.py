@@ -80,6 +80,20 @@ def test_the_rules_themselves_are_within_the_constraint_and_idle_vehicles_are_no
     assert rules.is_due(600)
 
 
+def test_damping_passes_with_the_violation_and_a_start_lasts() -> None:
+    def after(*changes: str) -> np.ndarray:
+        weighed = constraint(
+            training("comfort_constraint.start=0.1", "comfort_constraint.largest=9.0", *changes)
+        )
+        np.testing.assert_array_equal(weighed.multipliers, 0.1)
+        excess_k = weighed.update(100, lambda seen, _: np.zeros((len(seen), 8), dtype=np.int64), masked=False)
+        return np.stack([np.clip(excess_k, -1.0, 1.0), weighed.multipliers, weighed.notes()["integrals"]])
+
+    plain, damped = after(), after("comfort_constraint.damping_per_k=0.7")
+    np.testing.assert_array_equal(plain[2], damped[2])
+    np.testing.assert_allclose(damped[1], np.maximum(plain[2] + 0.7 * plain[0], 0.0))
+
+
 def test_a_margin_asks_for_more_comfort_but_not_for_more_than_its_share() -> None:
     def allowed_k(*changes: str) -> np.ndarray:
         return np.array(constraint(training(*changes)).notes()["allowed_k"])

@@ -20,12 +20,15 @@ if TYPE_CHECKING:
     from agents.benchmark.grid import Front
     from agents.controllers import Controller
 
-CABIN_KEY: Final = "cabin_set_point_degc"
-HTC_KEY: Final = "htc_set_point_degc"
+DIALS: Final[Mapping[str, tuple[str, tuple[float, float]]]] = {
+    # Below 30 degC the HTC could hardly heat a cabin; above 90 degC the plant limits it itself.
+    "cabin_offset_k": ("cabin_set_point_degc", (10.0, 30.0)),
+    "htc_offset_k": ("htc_set_point_degc", (30.0, 90.0)),
+    "ptc_offset_k": ("ptc_from_deviation_k", (-100.0, 40.0)),
+}
+"""What is moved: name of the offset, key in the controller file, and its range."""
 
-# Above, the plant limits the HTC itself; below, it could hardly heat a cabin.
-_HTC_RANGE_DEGC: Final = (30.0, 90.0)
-_CABIN_RANGE_DEGC: Final = (10.0, 30.0)
+OFFSETS: Final = tuple(DIALS)
 
 
 @dataclass(frozen=True)
@@ -34,23 +37,21 @@ class Setting:
 
     Attributes:
         family: Rules.
-        cabin_offset_k: By how much the cabin set point is moved.
-        htc_offset_k: By how much the HTC set point is moved.
-        cabin_set_point_degc: Cabin set point of the file itself, before its ambient bands.
-        htc_set_point_degc: HTC set point, likewise.
+        offsets_k: By how much each of `DIALS` is moved.
         controller: The controller.
     """
 
     family: str
-    cabin_offset_k: float
-    htc_offset_k: float
-    cabin_set_point_degc: float
-    htc_set_point_degc: float
+    offsets_k: Mapping[str, float]
     controller: Controller
+
+    def columns(self) -> dict[str, str | float]:
+        """Returns what tells it from others, as columns of a table."""
+        return {"family": self.family, **self.offsets_k}
 
 
 def settings(front: Front, folder: Path) -> list[Setting]:
-    """Writes a controller file for each pair of offsets.
+    """Writes a controller file for each combination of offsets.
 
     Args:
         front: Family and offsets.
@@ -63,17 +64,16 @@ def settings(front: Front, folder: Path) -> list[Setting]:
     folder.mkdir(parents=True, exist_ok=True)
     values = _values(front.family)
     made = []
-    for cabin_k, htc_k in itertools.product(front.cabin_offsets_k, front.htc_offsets_k):
-        moved = _moved(values, cabin_k, htc_k)
-        name = f"{Path(front.family).stem}-cabin{cabin_k:+g}-htc{htc_k:+g}"
+    for offsets in itertools.product(front.cabin_offsets_k, front.htc_offsets_k, front.ptc_offsets_k):
+        offsets_k = dict(zip(OFFSETS, offsets, strict=True))
+        moved = _moved(values, {key: (offsets_k[name], limits) for name, (key, limits) in DIALS.items()})
+        name = f"{Path(front.family).stem}-cabin{offsets[0]:+g}-htc{offsets[1]:+g}-ptc{offsets[2]:+g}"
         path = folder / f"{name}.toml"
         # Tables of ambient bands replace those of the base as a whole, so only what moved need be written.
         changed = {key: value for key, value in moved.items() if value != values[key]}
         with atomic_write(path) as temporary:
             temporary.write_text(tomlkit.dumps({"base": front.family, **changed}), encoding="utf-8")
-        made.append(
-            Setting(front.family, cabin_k, htc_k, moved[CABIN_KEY], moved[HTC_KEY], rules(name, path))
-        )
+        made.append(Setting(front.family, offsets_k, rules(name, path)))
     return made
 
 
@@ -92,18 +92,17 @@ def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any
     return both
 
 
-def _moved(value: Any, cabin_k: float, htc_k: float) -> Any:
-    """A copy with every set point moved, in ambient bands too."""
+def _moved(value: Any, offsets: Mapping[str, tuple[float, tuple[float, float]]]) -> Any:
+    """A copy with every set point moved within its range, in ambient bands too."""
     if isinstance(value, list):
-        return [_moved(item, cabin_k, htc_k) for item in value]
+        return [_moved(item, offsets) for item in value]
     if not isinstance(value, dict):
         return value
-    offsets = {CABIN_KEY: (cabin_k, _CABIN_RANGE_DEGC), HTC_KEY: (htc_k, _HTC_RANGE_DEGC)}
     copy = {}
     for key, item in value.items():
         if key in offsets:
             offset_k, (low, high) = offsets[key]
             copy[key] = min(max(item + offset_k, low), high)
         else:
-            copy[key] = _moved(item, cabin_k, htc_k)
+            copy[key] = _moved(item, offsets)
     return copy

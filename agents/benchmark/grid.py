@@ -63,13 +63,15 @@ class Variant(BaseModel):
 
 
 class Front(BaseModel):
-    """Set points that a family of rules is driven with, as offsets to its own; all pairs of them."""
+    """Set points that a family of rules is driven with, as offsets to its own; all combinations of them."""
 
     model_config = _CHECKED
 
     family: _Name
     cabin_offsets_k: Annotated[tuple[float, ...], Field(min_length=1)]
     htc_offsets_k: Annotated[tuple[float, ...], Field(min_length=1)]
+    ptc_offsets_k: Annotated[tuple[float, ...], Field(min_length=1)] = (0.0,)
+    """To the deviation of the cabin from which the PTC helps."""
 
 
 class GridFile(BaseModel):

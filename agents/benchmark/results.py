@@ -54,18 +54,16 @@ FRONT_COLUMNS: Final = (
     "family",
     "cabin_offset_k",
     "htc_offset_k",
-    "cabin_set_point_degc",
-    "htc_set_point_degc",
+    "ptc_offset_k",
     "attributable_energy_kwh",
     "discomfort_k",
     "heat_left_kwh",
     "stranded_trips",
 )
-"""Columns of the fronts: a row for each family of rules and pair of set points.
+"""Columns of the fronts: a row for each family of rules and combination of set points.
 
 Energy and heat are means per trip over the bands of the headline, discomfort is the mean over occupied time.
-Offsets are against the family's own set points; set points are those of the controller file itself, before
-its ambient bands.
+Offsets are against the family's own set points, in all its ambient bands alike.
 """
 
 

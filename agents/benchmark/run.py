@@ -9,7 +9,7 @@ from threadpoolctl import threadpool_limits
 
 from agents.benchmark import environment_facts, statistics, summary
 from agents.benchmark.drive import drive_all, trajectories
-from agents.benchmark.fronts import settings
+from agents.benchmark.fronts import OFFSETS, settings
 from agents.benchmark.results import Benchmark
 from agents.controllers import ControllerError
 from agents.controllers.policy import ABLATION
@@ -93,7 +93,7 @@ def run(
         [scenario.ambient_temperature_degc for scenario in grid.scenarios], plan.resamples, plan.seed
     )
     evidence = summary.Evidence(grid, runs, front_runs, resamples)
-    fronts = summary.front_table(evidence, _setting_table(rivals))
+    fronts = summary.front_table(evidence)
     learned = list(dict.fromkeys(each.name for each in plan.controllers if each.learned))
     ablations = [name for name in learned if name.startswith(ABLATION)]
     ablation_gains = summary.all_gains(evidence, ablations) or None
@@ -133,33 +133,9 @@ def _front_runs(rivals: Sequence[Setting], rows: Sequence[Sequence[dict[str, Any
     import pandas as pd
 
     told = [
-        {
-            "family": setting.family,
-            "cabin_offset_k": setting.cabin_offset_k,
-            "htc_offset_k": setting.htc_offset_k,
-            **row,
-        }
-        for setting, driven in zip(rivals, rows, strict=True)
-        for row in driven
+        {**setting.columns(), **row} for setting, driven in zip(rivals, rows, strict=True) for row in driven
     ]
-    return pd.DataFrame(told) if told else pd.DataFrame(columns=["family", "cabin_offset_k", "htc_offset_k"])
-
-
-def _setting_table(rivals: Iterable[Setting]) -> pd.DataFrame:
-    import pandas as pd
-
-    return pd.DataFrame(
-        [
-            {
-                "family": setting.family,
-                "cabin_offset_k": setting.cabin_offset_k,
-                "htc_offset_k": setting.htc_offset_k,
-                "cabin_set_point_degc": setting.cabin_set_point_degc,
-                "htc_set_point_degc": setting.htc_set_point_degc,
-            }
-            for setting in rivals
-        ]
-    )
+    return pd.DataFrame(told) if told else pd.DataFrame(columns=["family", *OFFSETS])
 
 
 def _trajectories(plan: Plan, files: dict[str, Path]) -> dict[str, dict[str, pd.DataFrame]]:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from agents.benchmark import gains, statistics
-from agents.benchmark.results import KPIS
+from agents.benchmark.fronts import OFFSETS
+from agents.benchmark.results import FRONT_COLUMNS, KPIS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -32,8 +33,8 @@ class Evidence:
     Attributes:
         grid: What was driven.
         runs: A row for each controller, seed and scenario.
-        front_runs: A row for each setting of the rules and scenario, with `family`, `cabin_offset_k` and
-            `htc_offset_k`; it may be empty.
+        front_runs: A row for each setting of the rules and scenario, with `family` and the offsets of
+            `fronts.OFFSETS`; it may be empty.
         resamples: Resamples of the grid's scenarios.
     """
 
@@ -87,7 +88,7 @@ def _key(name: str) -> str:
 def _gain(evidence: Evidence, controller: str, family: str, front_runs: pd.DataFrame) -> dict[str, Any]:
     headline = evidence.headline
     names = [name for name, counts in zip(evidence.names, headline, strict=True) if counts]
-    front = statistics.trips(front_runs, ["cabin_offset_k", "htc_offset_k"], names)
+    front = statistics.trips(front_runs, list(OFFSETS), names)
     agent, rules = evidence.trips(controller).of(headline), evidence.trips(family).of(headline)
     return gains.gain(agent, rules, front, evidence.resamples.of(headline), evidence.seeds(controller))
 
@@ -135,22 +136,18 @@ def kpis(runs: pd.DataFrame) -> dict[str, Any]:
     return values
 
 
-def front_table(evidence: Evidence, settings: pd.DataFrame) -> pd.DataFrame:
+def front_table(evidence: Evidence) -> pd.DataFrame:
     """Means of every setting of the rules over the headline's trips; columns as in `FRONT_COLUMNS`."""
+    import pandas as pd
+
     rows = []
-    keys = ["family", "cabin_offset_k", "htc_offset_k"]
+    keys = ["family", *OFFSETS]
     for values, runs in evidence.front_runs.groupby(keys, sort=False):
         means = kpis(runs)
         wanted = ("attributable_energy_kwh", "discomfort_k", "heat_left_kwh")
         row = dict(zip(keys, values, strict=True)) | {name: means[name] for name in wanted}
         rows.append(row | {"stranded_trips": means["stranded"]})
-    import pandas as pd
-
-    from agents.benchmark.results import FRONT_COLUMNS
-
-    if not rows:
-        return pd.DataFrame(columns=list(FRONT_COLUMNS))
-    return pd.DataFrame(rows).merge(settings, on=keys, validate="one_to_one")[list(FRONT_COLUMNS)]
+    return pd.DataFrame(rows, columns=list(FRONT_COLUMNS))
 
 
 def counts(runs: pd.DataFrame, kpi: str) -> dict[str, int]:

@@ -15,6 +15,7 @@ class ComfortConstraint:
     The policy minimises energy and weighed discomfort, subject to being no less comfortable than rules. The
     multiplier of that condition rises where the condition is violated, falls where there is comfort to spare,
     and is never negative (Tessler et al. 2019, arXiv:1805.11074, section 4, with one multiplier a climate).
+    Alone it is an integral controller; the proportional part is that of Stooke et al. 2020, arXiv:2007.03964.
 
     Args:
         training: What is trained.
@@ -29,11 +30,12 @@ class ComfortConstraint:
         self._trips = FixedTrips(training, settings.trips, settings.seed)
         self._next_update: int = notes["next_update"]
         self._multipliers = np.array(notes["multipliers"])
+        self._integrals = np.array(notes["integrals"])
         self._allowed_k = np.array(notes["allowed_k"])
 
     @classmethod
     def begin(cls, training: Training, settings: ComfortConstraintSettings) -> Self:
-        """Drives the rules to see what they allow; no multiplier is at work yet.
+        """Drives the rules to see what they allow.
 
         Raises:
             ConfigurationError: There are no such rules.
@@ -41,9 +43,11 @@ class ComfortConstraint:
         of_rules = FixedTrips(training, settings.trips, settings.seed).of_rules(settings.rules)
         reached_k = by_climate(of_rules.discomfort_k, of_rules, settings.ambient_degc)
         margin_k = np.minimum(settings.margin_k, settings.margin_share * reached_k)
+        start = [settings.start] * len(settings.ambient_degc)
         notes = {
             "next_update": settings.interval_decisions,
-            "multipliers": [0.0] * len(settings.ambient_degc),
+            "multipliers": start,
+            "integrals": start,
             "allowed_k": (reached_k - margin_k).tolist(),
         }
         return cls(training, settings, notes)
@@ -68,8 +72,10 @@ class ComfortConstraint:
         driven = self._trips.of_policy(decide, masked=masked)
         reached_k = by_climate(driven.discomfort_k, driven, settings.ambient_degc)
         excess_k: NDArray[np.float64] = reached_k - self._allowed_k
-        moved = self._multipliers + settings.step_per_k * np.clip(excess_k, -1.0, 1.0)
-        self._multipliers = np.clip(moved, 0.0, settings.largest)
+        counted_k = np.clip(excess_k, -1.0, 1.0)
+        self._integrals = np.clip(self._integrals + settings.step_per_k * counted_k, 0.0, settings.largest)
+        damped = self._integrals + settings.damping_per_k * counted_k
+        self._multipliers = np.clip(damped, 0.0, settings.largest)
         return excess_k
 
     def notes(self) -> dict[str, Any]:
@@ -77,6 +83,7 @@ class ComfortConstraint:
         return {
             "next_update": self._next_update,
             "multipliers": self._multipliers.tolist(),
+            "integrals": self._integrals.tolist(),
             "allowed_k": self._allowed_k.tolist(),
         }
 

@@ -98,13 +98,7 @@ class NormalisationSettings(_Table):
     trip stays the same.
     """
 
-    comfort_weight: list[Pair] | None = None
-    """Ambient temperatures in degC, rising, and a factor on the reward's part for discomfort.
-
-    Multipliers of a constraint: comfort must hold in every climate, and some have more of it to spare.
-    """
-
-    @field_validator("typical_cost", "comfort_weight")
+    @field_validator("typical_cost")
     @classmethod
     def _rises(cls, table: list[list[float]] | None) -> list[list[float]] | None:
         rows = table if table is not None else [[0.0, 1.0]]
@@ -130,8 +124,12 @@ class ComfortConstraintSettings(_Table):
     """Largest margin as a share of the rules' discomfort."""
     trips: Count = 256
     seed: Annotated[int, Field(ge=0)] = 2_000_000
+    start: NotNegative = 0.0
+    """What is added to the weight at the beginning."""
     step_per_k: Positive = 0.2
-    """Change of the weight for each Kelvin of violation (at most one) at each look."""
+    """Lasting change of the weight for each Kelvin of violation (at most one) at each look."""
+    damping_per_k: NotNegative = 0.0
+    """Passing change for each Kelvin of violation (at most one): a policy that follows late overshoots."""
     largest: Positive = 3.0
     """Largest addition to the weight, where the condition cannot be met."""
 

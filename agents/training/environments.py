@@ -28,12 +28,10 @@ class RewardScale:
         normalisation = training.normalisation
         self._factor = normalisation.reward_scale
         self._costs = _table(normalisation.typical_cost)
-        self._comfort = _table(normalisation.comfort_weight)
         constraint = training.comfort_constraint
         self._constrained_degc = np.array([0.0] if constraint is None else constraint.ambient_degc)
         self._multipliers = np.zeros(len(self._constrained_degc))
-        tables = (normalisation.typical_cost, normalisation.comfort_weight, constraint)
-        self._by_ambient = any(table is not None for table in tables)
+        self._by_ambient = normalisation.typical_cost is not None or constraint is not None
         if self._by_ambient:
             self._row, self._low_degc, self._high_degc = _ambient_row(training)
 
@@ -56,9 +54,8 @@ class RewardScale:
         share = 0.5 * (observations[:, self._row] + 1.0)
         ambient_degc = self._low_degc + share * (self._high_degc - self._low_degc)
         cost = np.interp(ambient_degc, self._costs[:, 0], self._costs[:, 1])
-        comfort = np.interp(ambient_degc, self._comfort[:, 0], self._comfort[:, 1])
-        constrained = np.interp(ambient_degc, self._constrained_degc, self._multipliers)
-        return np.stack([self._factor / cost, comfort + constrained])
+        comfort = 1.0 + np.interp(ambient_degc, self._constrained_degc, self._multipliers)
+        return np.stack([self._factor / cost, comfort])
 
 
 def scaled(

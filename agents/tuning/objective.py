@@ -1,4 +1,4 @@
-"""What choices cost on training trips."""
+"""What choices cost on training trips: energy, and discomfort that must not exceed the paper's."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,9 +16,16 @@ from hp_gym.vector_env import EVHeatPumpVectorEnv
 REWARD: Final = "reference"
 """What the reference policies are trained for, too (configs/rewards/reference.toml)."""
 
+MARGIN_K: Final = 0.6
+MARGIN_SHARE: Final = 0.2
+"""By how much rules must be more comfortable than the paper's: the lesser of Kelvins and share of discomfort."""
+
+PENALTY_PER_K: Final = 20.0
+"""Points for each Kelvin of discomfort beyond what is allowed: ten times what comfort costs there."""
+
 
 class Objective:
-    """Mean score of rules over the same training trips of a band.
+    """Mean score of rules over the same training trips of a band, no less comfortable than the paper's.
 
     Args:
         band: Ambient band.
@@ -32,9 +39,16 @@ class Objective:
         self._distribution = distribution
         self._trips = trips
         self._seed = seed
+        _, papers_k = self._drive(rules.PAPER)
+        self._allowed_k = papers_k - min(MARGIN_K, MARGIN_SHARE * papers_k)
 
     def score(self, choices: rules.Choices) -> float:
-        """Returns points a trip; more is better."""
+        """Returns points a trip; more is better. Discomfort beyond what is allowed costs `PENALTY_PER_K`."""
+        score, discomfort_k = self._drive(choices)
+        return score - PENALTY_PER_K * max(discomfort_k - self._allowed_k, 0.0)
+
+    def _drive(self, choices: rules.Choices) -> tuple[float, float]:
+        """Mean score of a trip, and mean discomfort over time [K]."""
         with TemporaryDirectory() as folder:
             file = Path(folder) / "controller.toml"
             rules.write(file, "One trial of a search.", [(self.band, choices)])
@@ -48,11 +62,14 @@ class Objective:
             )
             env.reset(seed=self._seed)
             scores = np.full(self._trips, np.nan)
+            discomfort_k, duration_s = np.zeros(self._trips), np.zeros(self._trips)
             while np.isnan(scores).any():
                 _, _, terminated, _, _ = env.step(env.rule_based_actions())
                 for index in np.flatnonzero(terminated & np.isnan(scores)).tolist():
-                    scores[index] = env.kpis(index)["score"]
-        return float(scores.mean())
+                    kpis = env.kpis(index)
+                    scores[index], discomfort_k[index] = kpis["score"], kpis["discomfort_k"]
+                    duration_s[index] = env.summary(index)["duration_s"]
+        return float(scores.mean()), float(np.average(discomfort_k, weights=duration_s))
 
 
 @contextmanager

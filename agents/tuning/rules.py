@@ -22,7 +22,7 @@ PAPER: Final[Choices] = {
     "controller.cabin_set_point_degc": 22.0,
     "controller.htc_set_point_degc": 90.0,
     "controller.battery.heat_up_to_degc": 20.0,
-    "controller.ptc_from_deviation_k": -100.0,
+    "controller.ptc_from_deviation_k": -20.0,
 }
 """What Jeffs et al. 2019 choose: all sources, battery heated, PTC whenever it may (sections 2.2 to 2.4)."""
 

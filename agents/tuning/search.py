@@ -106,6 +106,6 @@ def suggest(trial: optuna.Trial) -> dict[str, Value]:
             "controller.battery.heat_up_to_degc", -20.0, 20.0
         ),
         "controller.ptc_from_deviation_k": trial.suggest_float(
-            "controller.ptc_from_deviation_k", -100.0, 40.0
+            "controller.ptc_from_deviation_k", -20.0, 30.0
         ),
     }

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import plotly.graph_objects as go
 
+from agents.benchmark.fronts import OFFSETS
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -80,13 +82,14 @@ def _draw_front(
     figure.add_scatter(
         x=_short(discomfort_k),
         y=_short(energy_kwh),
-        customdata=settings[["cabin_set_point_degc", "htc_set_point_degc"]].round(1).to_numpy(),
+        customdata=settings[list(OFFSETS)].to_numpy(),
         mode="markers",
         marker={"color": colour, "size": 5, "opacity": 0.4},
         name=f"{name}, other set points",
         legendgroup=f"front of {family}",
         showlegend=False,
-        hovertemplate="cabin %{customdata[0]} °C, HTC %{customdata[1]} °C<br>%{x} K, %{y} kWh",
+        hovertemplate="set points moved: cabin %{customdata[0]:+} K, HTC %{customdata[1]:+} K, "
+        "PTC from %{customdata[2]:+} K<br>%{x} K, %{y} kWh",
     )
     figure.add_scatter(
         x=_short([corner[0] for corner in corners]),
