@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def tune(
     *,
     out: Annotated[Path, typer.Option(help="Folder for the two controller files.")] = Path("out/tune"),
-    trials: Annotated[int, typer.Option(min=10, help="Trials of the search in each ambient band.")] = 120,
+    trials: Annotated[int, typer.Option(min=10, help="Trials of the search in each ambient band.")] = 160,
     trips: Annotated[int, typer.Option(min=1, help="Training trips in each ambient band.")] = 128,
     seed: Annotated[int, typer.Option(min=0, help="Seed of trips and search.")] = 0,
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
@@ -61,7 +61,11 @@ def tune(
     from rich.table import Table
 
     table = Table(
-        box=None, header_style="bold", pad_edge=False, title="Points a training trip", title_justify="left"
+        box=None,
+        header_style="bold",
+        pad_edge=False,
+        title="Points a training trip, less what a lack of comfort costs",
+        title_justify="left",
     )
     for heading in ("Ambient", "paper's rules", "best mode", "tuned"):
         table.add_column(heading, justify="right", no_wrap=True)

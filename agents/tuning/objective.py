@@ -18,7 +18,7 @@ REWARD: Final = "reference"
 
 MARGIN_K: Final = 0.6
 MARGIN_SHARE: Final = 0.2
-"""By how much rules must be more comfortable than the paper's: the lesser of Kelvins and share of discomfort."""
+"""By how much rules must be more comfortable than the paper's: the lesser of Kelvins and share."""
 
 PENALTY_PER_K: Final = 20.0
 """Points for each Kelvin of discomfort beyond what is allowed: ten times what comfort costs there."""
