@@ -42,13 +42,12 @@ class ComfortConstraint:
         """
         of_rules = FixedTrips(training, settings.trips, settings.seed).of_rules(settings.rules)
         reached_k = by_climate(of_rules.discomfort_k, of_rules, settings.ambient_degc)
-        margin_k = np.minimum(settings.margin_k, settings.margin_share * reached_k)
         start = [settings.start] * len(settings.ambient_degc)
         notes = {
             "next_update": settings.interval_decisions,
             "multipliers": start,
             "integrals": start,
-            "allowed_k": (reached_k - margin_k).tolist(),
+            "allowed_k": [each - settings.margin_for(each) for each in reached_k.tolist()],
         }
         return cls(training, settings, notes)
 

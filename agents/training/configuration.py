@@ -133,6 +133,10 @@ class ComfortConstraintSettings(_Table):
     largest: Positive = 3.0
     """Largest addition to the weight, where the condition cannot be met."""
 
+    def margin_for(self, discomfort_k: float) -> float:
+        """Returns by how much to be more comfortable than rules with this discomfort [K]."""
+        return min(self.margin_k, self.margin_share * discomfort_k)
+
     @field_validator("ambient_degc")
     @classmethod
     def _rises(cls, degc: list[float]) -> list[float]:

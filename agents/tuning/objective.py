@@ -8,17 +8,14 @@ from typing import Final
 
 import numpy as np
 
+from agents.training import configuration
 from agents.tuning import rules
 from agents.tuning.bands import Band, training_distribution
 from hp_gym.policies import HpcuPolicy
 from hp_gym.vector_env import EVHeatPumpVectorEnv
 
-REWARD: Final = "reference"
-"""What the reference policies are trained for, too (configs/rewards/reference.toml)."""
-
-MARGIN_K: Final = 0.6
-MARGIN_SHARE: Final = 0.2
-"""By how much rules must be more comfortable than the paper's: the lesser of Kelvins and share."""
+POLICY: Final = "ppo"
+"""Training configuration whose reward and comfort constraint are the rules', too."""
 
 PENALTY_PER_K: Final = 20.0
 """Points for each Kelvin of discomfort beyond what is allowed: ten times what comfort costs there."""
@@ -39,8 +36,11 @@ class Objective:
         self._distribution = distribution
         self._trips = trips
         self._seed = seed
+        training = configuration.load(POLICY)
+        assert training.comfort_constraint is not None
+        self._reward = training.environment.reward
         _, papers_k = self._drive(rules.PAPER)
-        self._allowed_k = papers_k - min(MARGIN_K, MARGIN_SHARE * papers_k)
+        self._allowed_k = papers_k - training.comfort_constraint.margin_for(papers_k)
 
     def score(self, choices: rules.Choices) -> float:
         """Returns points a trip; more is better. Discomfort beyond what is allowed costs `PENALTY_PER_K`."""
@@ -57,7 +57,7 @@ class Objective:
                 distribution=self._distribution,
                 continuous=True,
                 actions=HpcuPolicy.ACTIONS,
-                reward=REWARD,
+                reward=self._reward,
                 overrides={"scenario.controller": str(file)},
             )
             env.reset(seed=self._seed)
