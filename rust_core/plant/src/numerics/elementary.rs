@@ -7,7 +7,7 @@ use std::f64::consts::LOG2_E;
 
 /// The logarithm of two in two parts; the first has zeros at its end, so that its product with a small whole number is
 /// exact.
-const LN_2: [f64; 2] = [6.931_471_803_691_238_2e-1, 1.908_214_929_270_587_7e-10];
+const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
 
 /// Added to a number and taken away again, this rounds it; in between its last bits are the whole number.
 const ROUNDING: f64 = 6_755_399_441_055_744.0;
