@@ -1,5 +1,6 @@
 """An electric vehicle's heat pump and thermal system as a Gymnasium environment."""
 
+from hp_gym import processor  # noqa: F401, first: it refuses to load an extension that cannot run here
 from hp_gym._core import ConfigurationError, Experiment, Run, __version__, names
 from hp_gym.command import encode
 from hp_gym.registration import register_envs

@@ -12,6 +12,7 @@ __all__ = [
     "Experiment",
     "Run",
     "Vector",
+    "__built_for__",
     "__version__",
     "actuators",
     "config_text",
@@ -23,6 +24,7 @@ __all__ = [
     "totals",
 ]
 
+__built_for__: Final[str]
 __version__: Final[str]
 
 class ConfigurationError(ValueError):

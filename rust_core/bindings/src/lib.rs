@@ -8,6 +8,13 @@ mod vector;
 
 use pyo3::prelude::*;
 
+/// Read from the file by `hp_gym/processor.py`, before any of this runs.
+const BUILT_FOR: &str = if cfg!(all(target_feature = "avx2", target_feature = "fma")) {
+    "hp_gym built for AVX2 and FMA"
+} else {
+    "hp_gym built for every processor of its kind"
+};
+
 /// Compiled core of `hp_gym`.
 #[pymodule]
 mod _core {
@@ -27,6 +34,7 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__built_for__", super::BUILT_FOR)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 

@@ -3,8 +3,10 @@
 use crate::action::ActionTable;
 use hp_plant::circuits::branches::Branch;
 use hp_plant::command::{ACTUATORS, Command};
+use hp_plant::config::ZERO_CELSIUS_K;
 use hp_plant::error::{PlantError, PlantResult};
 use hp_plant::flows::Flow;
+use hp_plant::numerics::thermal_network::Node;
 use hp_plant::signals::{self, Signal, View};
 use hp_plant::simulation::Experiment;
 
@@ -194,6 +196,7 @@ pub fn all(actions: &ActionTable) -> Vec<Observed> {
 #[derive(Debug, Clone, Default)]
 struct Places {
     signals: Vec<(usize, Signal)>,
+    temperatures: Vec<(usize, Node)>,
     flows: Vec<(usize, Flow)>,
     branches: Vec<(usize, Branch)>,
     asked: Vec<(usize, usize)>,
@@ -208,9 +211,10 @@ impl Places {
         let mut places = Self::default();
         for (place, row) in rows.iter().enumerate() {
             match row.source {
-                Source::Signal(signal) => match signal.flow() {
-                    Some(flow) => places.flows.push((place, flow)),
-                    None => places.signals.push((place, signal)),
+                Source::Signal(signal) => match (signal.flow(), signal.node()) {
+                    (Some(flow), _) => places.flows.push((place, flow)),
+                    (_, Some(node)) => places.temperatures.push((place, node)),
+                    (None, None) => places.signals.push((place, signal)),
                 },
                 Source::Solar => places.solar = Some(place),
                 Source::Occupants => places.occupants = Some(place),
@@ -223,13 +227,18 @@ impl Places {
         places
     }
 
-    /// Writes the values of all rows.
+    /// Writes the values of all rows, which are 0 before.
     fn read(&self, look: &Look<'_>, values: &mut [f64]) {
         for &(place, signal) in &self.signals {
             values[place] = signal.read(&look.view);
         }
-        for &(place, flow) in &self.flows {
-            values[place] = look.view.record.map_or(0.0, |record| record.flows[flow]);
+        for &(place, node) in &self.temperatures {
+            values[place] = look.view.state.temperatures_k[node.index()] - ZERO_CELSIUS_K;
+        }
+        if let Some(record) = look.view.record {
+            for &(place, flow) in &self.flows {
+                values[place] = record.flows[flow];
+            }
         }
         for &(place, branch) in &self.branches {
             values[place] = f64::from(u8::from(look.view.state.connected[branch as usize]));
@@ -267,6 +276,9 @@ pub struct ObservationTable {
 
 /// More rows than there are; a test counts them.
 const ROWS: usize = 192;
+
+/// As many rows as nearly all observations have: less to set to zero each second.
+const USUAL_ROWS: usize = 64;
 
 impl ObservationTable {
     /// Rows by name; a group stands for its rows.
@@ -322,7 +334,20 @@ impl ObservationTable {
 
     /// Writes an observation; `blur`, where there is noise, gives that of each measured row.
     pub fn write(&self, look: &Look<'_>, blur: Option<impl FnMut() -> f64>, values: &mut [f32]) {
-        let mut numbers = [0.0; ROWS];
+        if self.rows.len() <= USUAL_ROWS {
+            self.write_through::<USUAL_ROWS>(look, blur, values);
+        } else {
+            self.write_through::<ROWS>(look, blur, values);
+        }
+    }
+
+    fn write_through<const ROOM: usize>(
+        &self,
+        look: &Look<'_>,
+        blur: Option<impl FnMut() -> f64>,
+        values: &mut [f32],
+    ) {
+        let mut numbers = [0.0; ROOM];
         let numbers = &mut numbers[..self.rows.len()];
         self.places.read(look, numbers);
         if let Some(mut blur) = blur {

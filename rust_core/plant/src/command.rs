@@ -6,6 +6,7 @@
 
 use crate::config::vehicle::VehicleParameters;
 use crate::error::{PlantError, PlantResult};
+use crate::numerics::elementary;
 use serde::{Deserialize, Serialize};
 
 /// Number of actuators.
@@ -285,7 +286,7 @@ impl ActuatorRanges {
         if value < low {
             return -1.0;
         }
-        let share = (value / low).ln() / self.compressor_logarithm;
+        let share = elementary::ln(value / low) / self.compressor_logarithm;
         (COMPRESSOR_OFF_BELOW + (1.0 - COMPRESSOR_OFF_BELOW) * share).clamp(-1.0, 1.0) as f32
     }
 
@@ -296,7 +297,7 @@ impl ActuatorRanges {
             return 0.0;
         }
         let share = ((x - COMPRESSOR_OFF_BELOW) / (1.0 - COMPRESSOR_OFF_BELOW)).max(0.0);
-        self.low[COMPRESSOR] * (share * self.compressor_logarithm).exp()
+        self.low[COMPRESSOR] * elementary::exp(share * self.compressor_logarithm)
     }
 
     /// The command for a demand.

@@ -6,7 +6,7 @@ use crate::circuits::refrigeration_cycle::RefrigerationCycle;
 use crate::circuits::refrigeration_loop::{
     CompressorAllowance, Limit, LoopBoundary, LoopResult, RefrigerationState, SupplyLimit,
 };
-use crate::command::{ActuatorRanges, Command, Connection, Demand};
+use crate::command::{ActuatorRanges, Command};
 use crate::components::battery::{Battery, BatteryStep, CircuitStep, PowerLimits};
 use crate::components::powertrain::Powertrain;
 use crate::config::library::{self, Kind, Override};
@@ -46,10 +46,8 @@ pub struct Disturbance {
 pub struct StepRecord {
     /// Mean flows.
     pub flows: Flows,
-    /// What was asked for.
-    pub demand: Demand,
-    /// Connection granted, by member.
-    pub granted: [Connection; 6],
+    /// Compressor power that was asked for [W].
+    pub demanded_w: f64,
     /// Compressor power left by the pressure controller and the demand, before the caps [W].
     pub compressor_demand_w: f64,
     /// Refrigerant loop at the end of the step.
@@ -359,8 +357,7 @@ impl Plant {
         state.condensing_pressure_pa = refrigeration.condensing_pressure_pa;
         StepRecord {
             flows,
-            demand: period.demand,
-            granted: self.granted(state),
+            demanded_w: period.demand.compressor_power_w,
             compressor_demand_w: period.compressor_demand_w,
             refrigeration,
             boundary,
@@ -424,17 +421,6 @@ impl Plant {
         sources[nodes.battery.index()] += flows[Flow::BatteryLoss];
         sources[nodes.cabin.index()] += flows[Flow::Blower] + flows[Flow::Solar] + flows[Flow::Occupants];
         sources
-    }
-
-    /// Connection of each member.
-    fn granted(&self, state: &State) -> [Connection; 6] {
-        let mut granted = [Connection::Isolated; 6];
-        for (branch, connected) in Branch::ALL.into_iter().zip(state.connected) {
-            if connected {
-                granted[branch.member() as usize] = branch.connection();
-            }
-        }
-        granted
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Trajectories, reports and observations are derived from these rows.
 
+use crate::circuits::assembly::NODES;
 use crate::command::{Connection, Member};
 use crate::config::ZERO_CELSIUS_K;
 use crate::flows::Flow;
@@ -23,10 +24,6 @@ pub struct View<'a> {
 }
 
 impl View<'_> {
-    fn degc(&self, node: Node) -> f64 {
-        self.state.temperatures_k[node.index()] - ZERO_CELSIUS_K
-    }
-
     fn recorded(&self, read: impl Fn(&StepRecord) -> f64) -> f64 {
         self.record.map_or(0.0, read)
     }
@@ -47,6 +44,7 @@ pub struct Signal {
 #[derive(Debug, Clone, Copy)]
 enum Reader {
     Function(fn(&View<'_>) -> f64),
+    Temperature(Node),
     Flow(Flow),
     Connection(Member),
 }
@@ -57,7 +55,16 @@ impl Signal {
     pub fn flow(&self) -> Option<Flow> {
         match self.reader {
             Reader::Flow(flow) => Some(flow),
-            Reader::Function(_) | Reader::Connection(_) => None,
+            Reader::Function(_) | Reader::Temperature(_) | Reader::Connection(_) => None,
+        }
+    }
+
+    /// The node whose temperature it shows in degC, if it shows one.
+    #[must_use]
+    pub fn node(&self) -> Option<Node> {
+        match self.reader {
+            Reader::Temperature(node) => Some(node),
+            Reader::Function(_) | Reader::Flow(_) | Reader::Connection(_) => None,
         }
     }
 
@@ -66,78 +73,87 @@ impl Signal {
     pub fn read(&self, view: &View<'_>) -> f64 {
         match self.reader {
             Reader::Function(read) => read(view),
+            Reader::Temperature(node) => view.state.temperatures_k[node.index()] - ZERO_CELSIUS_K,
             Reader::Flow(flow) => view.recorded(|record| record.flows[flow]),
-            Reader::Connection(member) => view.recorded(|record| match record.granted[member as usize] {
+            Reader::Connection(member) => match view.state.connection(member) {
                 Connection::Isolated => 0.0,
                 Connection::Htc => 1.0,
                 Connection::Chiller => 2.0,
-            }),
+            },
         }
     }
 }
 
 macro_rules! signals {
-    ($( $name:literal, $unit:literal, $description:literal, $read:expr; )*) => {
-        &[$( Signal { name: $name, unit: $unit, description: $description, reader: Reader::Function($read) }, )*]
+    ($( $name:literal, $unit:literal, $description:literal, $reader:expr; )*) => {
+        &[$( Signal { name: $name, unit: $unit, description: $description, reader: $reader }, )*]
     };
 }
 
+const fn function(read: fn(&View<'_>) -> f64) -> Reader {
+    Reader::Function(read)
+}
+
+const fn temperature(node: Node) -> Reader {
+    Reader::Temperature(node)
+}
+
 const STATES: &[Signal] = signals! {
-    "time_s", "s", "time since the start", |v| v.state.time_s;
+    "time_s", "s", "time since the start", function(|v| v.state.time_s);
     "speed_m_s", "m/s", "vehicle speed at the end of the step",
-        |v| if v.record.is_some() { v.disturbance.end_speed_m_s } else { v.disturbance.start_speed_m_s };
-    "ambient_temperature_degc", "degC", "ambient air", |v| v.disturbance.ambient_k - ZERO_CELSIUS_K;
-    "cabin_temperature_degc", "degC", "cabin, large air volume", |v| v.degc(v.plant.assembly.nodes.cabin);
-    "exhaust_temperature_degc", "degC", "cabin, small exhaust volume", |v| v.degc(v.plant.assembly.nodes.exhaust);
-    "soft_furnishings_temperature_degc", "degC", "seats, carpet", |v| v.degc(v.plant.assembly.nodes.soft);
-    "hard_furnishings_temperature_degc", "degC", "dashboard, glass", |v| v.degc(v.plant.assembly.nodes.hard);
-    "battery_temperature_degc", "degC", "battery", |v| v.degc(v.plant.assembly.nodes.battery);
-    "motor_temperature_degc", "degC", "motor and inverter", |v| v.degc(v.plant.assembly.nodes.motor);
-    "transmission_temperature_degc", "degC", "transmission", |v| v.degc(v.plant.assembly.nodes.transmission);
-    "thermal_battery_temperature_degc", "degC", "thermal battery", |v| v.degc(v.plant.assembly.nodes.thermal_battery);
+        function(|v| if v.record.is_some() { v.disturbance.end_speed_m_s } else { v.disturbance.start_speed_m_s });
+    "ambient_temperature_degc", "degC", "ambient air", function(|v| v.disturbance.ambient_k - ZERO_CELSIUS_K);
+    "cabin_temperature_degc", "degC", "cabin, large air volume", temperature(NODES.cabin);
+    "exhaust_temperature_degc", "degC", "cabin, small exhaust volume", temperature(NODES.exhaust);
+    "soft_furnishings_temperature_degc", "degC", "seats, carpet", temperature(NODES.soft);
+    "hard_furnishings_temperature_degc", "degC", "dashboard, glass", temperature(NODES.hard);
+    "battery_temperature_degc", "degC", "battery", temperature(NODES.battery);
+    "motor_temperature_degc", "degC", "motor and inverter", temperature(NODES.motor);
+    "transmission_temperature_degc", "degC", "transmission", temperature(NODES.transmission);
+    "thermal_battery_temperature_degc", "degC", "thermal battery", temperature(NODES.thermal_battery);
     "htc_supply_temperature_degc", "degC", "HTC after condenser, thermal battery and PTC",
-        |v| v.degc(v.plant.assembly.nodes.htc_supply);
-    "htc_return_temperature_degc", "degC", "HTC before the condenser", |v| v.degc(v.plant.assembly.nodes.htc_return);
+        temperature(NODES.htc_supply);
+    "htc_return_temperature_degc", "degC", "HTC before the condenser", temperature(NODES.htc_return);
     "chiller_supply_temperature_degc", "degC", "chiller loop after the evaporator",
-        |v| v.degc(v.plant.assembly.nodes.chiller_supply);
+        temperature(NODES.chiller_supply);
     "chiller_return_temperature_degc", "degC", "chiller loop before the evaporator",
-        |v| v.degc(v.plant.assembly.nodes.chiller_return);
+        temperature(NODES.chiller_return);
     "soc", "-", "state of charge of equation (6), against the capacity usable at the present temperature",
-        |v| v.plant.battery.usable_state_of_charge(&v.state.battery,
-            v.state.temperatures_k[v.plant.assembly.nodes.battery.index()]);
-    "charge_soc", "-", "state of charge by charge alone", |v| v.plant.battery.state_of_charge(&v.state.battery);
-    "battery_voltage_v", "V", "mean terminal voltage", |v| v.recorded(|r| r.battery_voltage_v);
-    "battery_current_a", "A", "mean pack current, positive while discharging", |v| v.recorded(|r| r.battery_current_a);
-    "battery_charge_limit_w", "W", "largest charging power", |v| v.recorded(|r| r.power_limits.charge_w);
-    "battery_discharge_limit_w", "W", "largest discharging power", |v| v.recorded(|r| r.power_limits.discharge_w);
-    "auxiliary_power_w", "W", "12 V load, pumps, blower and fan", |v| v.recorded(|r| r.flows.base_load_w());
-    "htc_flow_kg_s", "kg/s", "HTC coolant flow", |v| v.state.htc_pump.flow_kg_s;
-    "chiller_flow_kg_s", "kg/s", "chiller coolant flow", |v| v.state.chiller_pump.flow_kg_s;
-    "compressor_demand_w", "W", "compressor power asked for", |v| v.recorded(|r| r.demand.compressor_power_w);
-    "compressor_speed_rev_s", "rev/s", "compressor speed", |v| v.recorded(|r| r.refrigeration.speed_rev_s);
-    "compressor_starts", "-", "compressor starts so far", |v| f64::from(v.state.refrigeration.compressor.starts);
+        function(|v| v.plant.battery.usable_state_of_charge(&v.state.battery,
+            v.state.temperatures_k[v.plant.assembly.nodes.battery.index()]));
+    "charge_soc", "-", "state of charge by charge alone", function(|v| v.plant.battery.state_of_charge(&v.state.battery));
+    "battery_voltage_v", "V", "mean terminal voltage", function(|v| v.recorded(|r| r.battery_voltage_v));
+    "battery_current_a", "A", "mean pack current, positive while discharging", function(|v| v.recorded(|r| r.battery_current_a));
+    "battery_charge_limit_w", "W", "largest charging power", function(|v| v.recorded(|r| r.power_limits.charge_w));
+    "battery_discharge_limit_w", "W", "largest discharging power", function(|v| v.recorded(|r| r.power_limits.discharge_w));
+    "auxiliary_power_w", "W", "12 V load, pumps, blower and fan", function(|v| v.recorded(|r| r.flows.base_load_w()));
+    "htc_flow_kg_s", "kg/s", "HTC coolant flow", function(|v| v.state.htc_pump.flow_kg_s);
+    "chiller_flow_kg_s", "kg/s", "chiller coolant flow", function(|v| v.state.chiller_pump.flow_kg_s);
+    "compressor_demand_w", "W", "compressor power asked for", function(|v| v.recorded(|r| r.demanded_w));
+    "compressor_speed_rev_s", "rev/s", "compressor speed", function(|v| v.recorded(|r| r.refrigeration.speed_rev_s));
+    "compressor_starts", "-", "compressor starts so far", function(|v| f64::from(v.state.refrigeration.compressor.starts));
     "protection_trips", "-", "compressor stops forced by a limit so far",
-        |v| f64::from(v.state.refrigeration.compressor.protection_trips);
-    "condensing_pressure_bar", "bar", "condensing pressure", |v| v.recorded(|r| r.refrigeration.condensing_pressure_pa * 1e-5);
-    "evaporating_pressure_bar", "bar", "evaporating pressure", |v| v.recorded(|r| r.refrigeration.evaporating_pressure_pa * 1e-5);
+        function(|v| f64::from(v.state.refrigeration.compressor.protection_trips));
+    "condensing_pressure_bar", "bar", "condensing pressure", function(|v| v.recorded(|r| r.refrigeration.condensing_pressure_pa * 1e-5));
+    "evaporating_pressure_bar", "bar", "evaporating pressure", function(|v| v.recorded(|r| r.refrigeration.evaporating_pressure_pa * 1e-5));
     "condensing_temperature_degc", "degC", "condensing temperature",
-        |v| v.recorded(|r| r.refrigeration.condensing_temperature_k - ZERO_CELSIUS_K);
+        function(|v| v.recorded(|r| r.refrigeration.condensing_temperature_k - ZERO_CELSIUS_K));
     "evaporating_temperature_degc", "degC", "evaporating temperature",
-        |v| v.recorded(|r| r.refrigeration.evaporating_temperature_k - ZERO_CELSIUS_K);
+        function(|v| v.recorded(|r| r.refrigeration.evaporating_temperature_k - ZERO_CELSIUS_K));
     "discharge_temperature_degc", "degC", "gas at the compressor outlet",
-        |v| v.recorded(|r| r.refrigeration.discharge_temperature_k - ZERO_CELSIUS_K);
-    "refrigerant_flow_kg_s", "kg/s", "refrigerant mass flow", |v| v.recorded(|r| r.refrigeration.mass_flow_kg_s);
+        function(|v| v.recorded(|r| r.refrigeration.discharge_temperature_k - ZERO_CELSIUS_K));
+    "refrigerant_flow_kg_s", "kg/s", "refrigerant mass flow", function(|v| v.recorded(|r| r.refrigeration.mass_flow_kg_s));
     "refrigeration_status", "-", "how the refrigerant solve ended, position in its list of statuses",
-        |v| v.recorded(|r| r.refrigeration.status as u8 as f64);
+        function(|v| v.recorded(|r| r.refrigeration.status as u8 as f64));
     "cop", "-", "condenser heat flow over compressor power; 0 at rest",
-        |v| v.recorded(|r| {
+        function(|v| v.recorded(|r| {
             let power_w = r.flows[Flow::Compressor];
             if power_w > 0.0 { r.flows[Flow::Condenser] / power_w } else { 0.0 }
-        });
+        }));
     "loads_shed", "-", "1 while thermal loads are cut because the battery cannot feed them",
-        |v| v.recorded(|r| f64::from(u8::from(r.loads_shed)));
-    "energy_residual_w", "W", "residual of the energy ledger", |v| v.recorded(|r| r.ledger.residual_w);
-    "energy_scale_w", "W", "power in play that the residual is compared with", |v| v.recorded(|r| r.ledger.scale_w);
+        function(|v| v.recorded(|r| f64::from(u8::from(r.loads_shed))));
+    "energy_residual_w", "W", "residual of the energy ledger", function(|v| v.recorded(|r| r.ledger.residual_w));
+    "energy_scale_w", "W", "power in play that the residual is compared with", function(|v| v.recorded(|r| r.ledger.scale_w));
 };
 
 const CONNECTIONS: [(&str, Member); 6] = [

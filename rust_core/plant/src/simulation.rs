@@ -172,15 +172,16 @@ impl Experiment {
     /// One step with a command; tells why the run is over, if it is.
     pub fn step(&self, run: &mut Run, command: &Command) -> Option<EndReason> {
         let disturbance = self.disturbance(run.steps);
-        let before = run.state;
+        let nodes = &self.plant.assembly.nodes;
+        let supplies_before_k =
+            [nodes.htc_supply, nodes.chiller_supply].map(|node| run.state.temperatures_k[node.index()]);
         let record = self.plant.step(&mut run.state, command, &disturbance);
         run.steps += 1;
-        run.record = Some(record);
-        run.summary.add(&self.plant, &before, &run.state, &record, &disturbance);
-        let battery_k = run.state.temperatures_k[self.plant.assembly.nodes.battery.index()];
+        let record = run.record.insert(record);
+        run.summary.add(&self.plant, supplies_before_k, &run.state, record, &disturbance);
         if run.summary.energy_j(Flow::Unserved) > TOLERATED_UNSERVED_J {
             Some(EndReason::UnservedEnergy)
-        } else if self.plant.battery.usable_state_of_charge(&run.state.battery, battery_k) <= 0.0 {
+        } else if run.summary.final_soc() <= 0.0 {
             Some(EndReason::BatteryEmpty)
         } else if run.steps >= self.cycle.duration_s() {
             Some(EndReason::Arrived)

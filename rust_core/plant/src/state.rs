@@ -1,7 +1,8 @@
 //! The whole state of a vehicle: plain data, so that a snapshot is a copy.
 
-use crate::circuits::branches::BRANCH_COUNT;
+use crate::circuits::branches::{BRANCH_COUNT, Branch};
 use crate::circuits::refrigeration_loop::RefrigerationState;
+use crate::command::{Connection, Member};
 use crate::components::battery::BatteryState;
 use crate::components::pump::PumpState;
 use crate::control::pid::{IncrementalPid, ResetPid};
@@ -39,4 +40,14 @@ pub struct State {
     pub ptc_power_w: f64,
     /// Compressor power of the last step [W].
     pub compressor_power_w: f64,
+}
+
+impl State {
+    /// Which loop a member is connected to.
+    #[must_use]
+    pub fn connection(&self, member: Member) -> Connection {
+        let own = |(branch, on): &(Branch, bool)| *on && branch.member() == member;
+        let connected = Branch::ALL.into_iter().zip(self.connected).find(own);
+        connected.map_or(Connection::Isolated, |(branch, _)| branch.connection())
+    }
 }

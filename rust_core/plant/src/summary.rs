@@ -79,11 +79,11 @@ impl Default for Summary {
 }
 
 impl Summary {
-    /// Adds a step.
+    /// Adds a step that began with these temperatures of HTC and chiller supply [K].
     pub fn add(
         &mut self,
         plant: &Plant,
-        before: &State,
+        supplies_before_k: [f64; 2],
         after: &State,
         record: &StepRecord,
         disturbance: &Disturbance,
@@ -111,19 +111,21 @@ impl Summary {
         self.compressor_starts = f64::from(after.refrigeration.compressor.starts);
         self.protection_trips = f64::from(after.refrigeration.compressor.protection_trips);
         self.shed_s += f64::from(u8::from(record.loads_shed)) * CONTROL_PERIOD_S;
-        self.check_limits(plant, before, after, record);
+        self.check_limits(plant, supplies_before_k, after, record);
     }
 
     /// A breach is a limit passed while the heat pump runs and moves away from where the step began.
-    fn check_limits(&mut self, plant: &Plant, before: &State, after: &State, record: &StepRecord) {
+    fn check_limits(
+        &mut self,
+        plant: &Plant,
+        supplies_before_k: [f64; 2],
+        after: &State,
+        record: &StepRecord,
+    ) {
         let nodes = &plant.assembly.nodes;
         let vehicle = &plant.vehicle;
-        let htc =
-            (before.temperatures_k[nodes.htc_supply.index()], after.temperatures_k[nodes.htc_supply.index()]);
-        let chiller = (
-            before.temperatures_k[nodes.chiller_supply.index()],
-            after.temperatures_k[nodes.chiller_supply.index()],
-        );
+        let htc = (supplies_before_k[0], after.temperatures_k[nodes.htc_supply.index()]);
+        let chiller = (supplies_before_k[1], after.temperatures_k[nodes.chiller_supply.index()]);
         self.highest_htc_supply_degc = self.highest_htc_supply_degc.max(htc.1 - ZERO_CELSIUS_K);
         self.lowest_chiller_supply_degc = self.lowest_chiller_supply_degc.min(chiller.1 - ZERO_CELSIUS_K);
         if !record.refrigeration.running() {
@@ -143,6 +145,12 @@ impl Summary {
         let too_fast = record.refrigeration.speed_rev_s > compressor.maximum_speed_rev_s * 1.001;
         let breached = too_high || too_hot || too_cold || gas_too_hot || too_fast;
         self.limit_breaches += f64::from(u8::from(breached));
+    }
+
+    /// State of charge of equation (6) at the end of the last step [-].
+    #[must_use]
+    pub fn final_soc(&self) -> f64 {
+        self.final_soc
     }
 
     /// Energy of a flow so far [J].

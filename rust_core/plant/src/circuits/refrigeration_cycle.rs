@@ -6,7 +6,7 @@ use crate::components::refrigerant_exchanger::approach_limited_k;
 use crate::config::refrigeration::RefrigerationParameters;
 use crate::config::{Celsius, Violation};
 use crate::media::refrigerant::{CondensingIsobar, RefrigerantTable};
-use crate::numerics::dual::{Dual, Real};
+use crate::numerics::dual::Real;
 
 /// Isentropic work below which the cycle is continued smoothly [J/kg]; far below the lowest pressure ratio.
 const WORK_KNEE_J_KG: f64 = 500.0;
@@ -187,9 +187,4 @@ impl<T: Real> CyclePoint<T> {
     pub fn pressure_ratio(&self) -> f64 {
         self.isobar.pressure_pa.value() / self.evaporating_pressure_pa.value()
     }
-}
-
-/// The three unknowns as independent variables.
-pub(super) fn variables(unknowns: [f64; 3]) -> [Dual<3>; 3] {
-    std::array::from_fn(|k| Dual::variable(unknowns[k], k))
 }

@@ -8,8 +8,8 @@ use std::cell::Cell;
 
 use serde::{Deserialize, Serialize};
 
-use super::refrigeration_cycle::{CoolantSides, CyclePoint, RefrigerationCycle, variables};
-use crate::numerics::dual::Real;
+use super::refrigeration_cycle::{CoolantSides, CyclePoint, RefrigerationCycle};
+use crate::numerics::dual::{Real, variables};
 use crate::numerics::root::{bracketed_root, expand, maximum};
 use crate::numerics::three_equations::{Inverse, largest};
 
@@ -363,7 +363,7 @@ impl Solver<'_> {
     /// Errors of all equations and their derivatives.
     fn linearised(&self, closure: Closure, unknowns: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
         let errors = self.errors(closure, &self.cycle.evaluate(&self.sides, variables(unknowns)));
-        (errors.map(|error| error.value), errors.map(|error| error.gradient))
+        (errors.map(|error| error.value), errors.map(|error| error.gradient.array()))
     }
 
     /// Brackets the least margin of all limits over speed.

@@ -5,6 +5,7 @@
 
 use crate::config::ZERO_CELSIUS_K;
 use crate::config::battery::{BatteryParameters, RateLimitParameters};
+use crate::numerics::elementary;
 use crate::numerics::interpolation::{BilinearTable, LinearTable, Segment};
 use serde::{Deserialize, Serialize};
 
@@ -165,7 +166,7 @@ impl Battery {
         let series_ohm = r0 * self.cells_in_series;
         let polarisation_ohm = r1 * self.cells_in_series;
         let root_capacitance = (time_constant_s / (r1 * self.cells_in_series)).sqrt();
-        let decay = (-step_s / time_constant_s).exp();
+        let decay = elementary::exp(-step_s / time_constant_s);
         let segment = self.open_circuit_voltage.segment(soc);
         CircuitStep {
             battery: self,

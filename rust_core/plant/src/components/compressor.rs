@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::config::refrigeration::CompressorParameters;
 use crate::numerics::dual::Real;
+use crate::numerics::elementary;
 
 /// Pressure ratio minus one below which the efficiencies flatten; outside what the machine may do.
 const PRESSURE_RATIO_KNEE: f64 = 0.02;
@@ -21,7 +22,7 @@ pub fn soft_floor<T: Real>(x: T, knee: f64) -> T {
     if x.value() >= knee {
         return x;
     }
-    let tail = knee * (x.value() / knee - 1.0).exp();
+    let tail = knee * elementary::exp(x.value() / knee - 1.0);
     x.chain(tail, tail / knee)
 }
 

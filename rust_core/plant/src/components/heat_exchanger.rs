@@ -1,5 +1,7 @@
 //! Effectiveness-NTU relations (Bergman et al., chapter 11).
 
+use crate::numerics::elementary;
+
 /// Conductance between the two inlet temperatures when one side is (nearly) isothermal [W/K].
 ///
 /// `G = C (1 - exp(-UA / C))` with the capacity rate `C` of the flowing side; never above `C`.
@@ -9,7 +11,7 @@ pub fn inlet_conductance_w_k(capacity_rate_w_k: f64, ua_w_k: f64) -> f64 {
     if capacity_rate_w_k <= 0.0 {
         return 0.0;
     }
-    -capacity_rate_w_k * (-ua_w_k / capacity_rate_w_k).exp_m1()
+    -capacity_rate_w_k * elementary::exp_m1(-ua_w_k / capacity_rate_w_k)
 }
 
 /// Conductance between the inlet temperatures of two flows in counterflow [W/K].
@@ -30,7 +32,7 @@ pub fn counterflow_conductance_w_k(
     let effectiveness = if ratio > 1.0 - 1e-9 {
         transfer_units / (1.0 + transfer_units)
     } else {
-        let decay = (-transfer_units * (1.0 - ratio)).exp();
+        let decay = elementary::exp(-transfer_units * (1.0 - ratio));
         (1.0 - decay) / (1.0 - ratio * decay)
     };
     effectiveness * small

@@ -1,6 +1,7 @@
 //! Transmission and driveline.
 
 use crate::config::powertrain::TransmissionParameters;
+use crate::numerics::elementary;
 
 impl TransmissionParameters {
     /// Load-independent loss: churning of oil whose viscosity falls with temperature [W].
@@ -9,7 +10,7 @@ impl TransmissionParameters {
     #[must_use]
     pub fn spin_loss_w(&self, oil_temperature_k: f64, speed_m_s: f64) -> f64 {
         let above = oil_temperature_k - self.spin_loss_reference_degc.kelvin();
-        self.spin_loss_force_n * (-above / self.viscosity_temperature_k).exp() * speed_m_s
+        self.spin_loss_force_n * elementary::exp(-above / self.viscosity_temperature_k) * speed_m_s
     }
 
     /// Conductance to ambient [W/K].

@@ -2,6 +2,7 @@
 
 use crate::config::battery::PlateParameters;
 use crate::media::air::AirProperties;
+use crate::numerics::elementary;
 
 /// Reynolds number of transition on a flat plate (Bergman et al., section 7.2).
 const TRANSITION_REYNOLDS: f64 = 5e5;
@@ -17,7 +18,7 @@ pub fn convection_coefficient_w_m2_k(speed_m_s: f64, length_m: f64, air: &AirPro
     if reynolds < TRANSITION_REYNOLDS {
         0.664 * reynolds.sqrt() * scale
     } else {
-        (0.037 * reynolds.powf(0.8) - 871.0) * scale
+        (0.037 * elementary::power(reynolds, 0.8) - 871.0) * scale
     }
 }
 

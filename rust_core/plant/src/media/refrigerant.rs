@@ -283,7 +283,7 @@ impl RefrigerantTable {
 #[inline]
 fn polynomial<T: Real>(coefficients: &[T], x: T) -> T {
     let Some((last, lower)) = coefficients.split_last() else { return T::constant(0.0) };
-    lower.iter().rev().fold(*last, |sum, coefficient| sum * x + *coefficient)
+    lower.iter().rev().fold(*last, |sum, coefficient| sum.times_plus(x, *coefficient))
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! Forward-mode dual numbers: equations are written once over [`Real`], Newton gets exact derivatives.
 
+use crate::numerics::elementary;
 use std::ops::{Add, Div, Mul, Neg, Sub};
+use wide::f64x4;
 
 /// Numbers that the steady equations can be evaluated with: `f64`, or [`Dual`] where derivatives are needed.
 pub trait Real:
@@ -43,6 +45,13 @@ pub trait Real:
         self.chain(root, 0.5 / root)
     }
 
+    /// `self * factor + addend`.
+    #[must_use]
+    #[inline]
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
+    }
+
     /// Integer power.
     #[must_use]
     #[inline]
@@ -63,7 +72,7 @@ pub trait Real:
     #[must_use]
     #[inline]
     fn exp(self) -> Self {
-        let exponential = self.value().exp();
+        let exponential = elementary::exp(self.value());
         self.chain(exponential, exponential)
     }
 
@@ -71,7 +80,7 @@ pub trait Real:
     #[must_use]
     #[inline]
     fn ln(self) -> Self {
-        self.chain(self.value().ln(), self.value().recip())
+        self.chain(elementary::ln(self.value()), self.value().recip())
     }
 
     /// The larger by value.
@@ -116,52 +125,117 @@ impl Real for f64 {
     fn chain(self, value: f64, _slope: f64) -> Self {
         value
     }
+
+    #[inline]
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        elementary::fused(self, factor, addend)
+    }
 }
 
-/// A value with its derivatives with respect to `N` variables.
+/// Derivatives of a number: one, or those with respect to several variables side by side.
+pub trait Gradient: Copy + Add<Output = Self> + Mul<f64, Output = Self> {
+    /// Derivatives of a constant.
+    const NONE: Self;
+
+    /// `self * factor + addend`.
+    #[must_use]
+    fn times_plus(self, factor: f64, addend: Self) -> Self;
+}
+
+impl Gradient for f64 {
+    const NONE: Self = 0.0;
+
+    #[inline]
+    fn times_plus(self, factor: f64, addend: Self) -> Self {
+        elementary::fused(self, factor, addend)
+    }
+}
+
+/// Derivatives with respect to three variables, in one vector register; the fourth lane is idle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Dual<const N: usize> {
+pub struct Three(f64x4);
+
+impl Three {
+    /// One derivative for each variable.
+    #[must_use]
+    #[inline]
+    pub fn array(self) -> [f64; 3] {
+        let [a, b, c, _] = self.0.to_array();
+        [a, b, c]
+    }
+}
+
+impl Add for Three {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl Mul<f64> for Three {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, factor: f64) -> Self {
+        Self(self.0 * f64x4::splat(factor))
+    }
+}
+
+impl Gradient for Three {
+    const NONE: Self = Self(f64x4::ZERO);
+
+    #[inline]
+    fn times_plus(self, factor: f64, addend: Self) -> Self {
+        Self(self.0.mul_add(f64x4::splat(factor), addend.0))
+    }
+}
+
+/// A value with its derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dual<G> {
     /// The number itself.
     pub value: f64,
     /// Its derivatives.
-    pub gradient: [f64; N],
+    pub gradient: G,
 }
 
-impl<const N: usize> Dual<N> {
-    /// The independent variable number `index`.
+impl Dual<f64> {
+    /// The one independent variable.
     #[must_use]
-    pub fn variable(value: f64, index: usize) -> Self {
-        let mut gradient = [0.0; N];
-        gradient[index] = 1.0;
-        Self { value, gradient }
-    }
-
-    #[inline]
-    fn combine(value: f64, left: &Self, left_slope: f64, right: &Self, right_slope: f64) -> Self {
-        let mut gradient = [0.0; N];
-        for (k, slope) in gradient.iter_mut().enumerate() {
-            *slope = left_slope * left.gradient[k] + right_slope * right.gradient[k];
-        }
-        Self { value, gradient }
+    pub fn variable(value: f64) -> Self {
+        Self { value, gradient: 1.0 }
     }
 }
 
-impl<const N: usize> Real for Dual<N> {
-    type Single = Dual<1>;
+/// Three independent variables.
+#[must_use]
+#[inline]
+pub fn variables(values: [f64; 3]) -> [Dual<Three>; 3] {
+    std::array::from_fn(|k| {
+        let mut gradient = [0.0; 4];
+        gradient[k] = 1.0;
+        Dual { value: values[k], gradient: Three(f64x4::new(gradient)) }
+    })
+}
+
+impl<G: Gradient> Real for Dual<G> {
+    type Single = Dual<f64>;
 
     #[inline]
-    fn alone(self) -> Dual<1> {
-        Dual { value: self.value, gradient: [1.0] }
+    fn alone(self) -> Dual<f64> {
+        Dual { value: self.value, gradient: 1.0 }
     }
 
     #[inline]
-    fn then(self, function: Dual<1>) -> Self {
-        self.chain(function.value, function.gradient[0])
+    fn then(self, function: Dual<f64>) -> Self {
+        self.chain(function.value, function.gradient)
     }
 
     #[inline]
     fn constant(value: f64) -> Self {
-        Self { value, gradient: [0.0; N] }
+        Self { value, gradient: G::NONE }
     }
 
     #[inline]
@@ -171,11 +245,20 @@ impl<const N: usize> Real for Dual<N> {
 
     #[inline]
     fn chain(self, value: f64, slope: f64) -> Self {
-        Self { value, gradient: self.gradient.map(|derivative| slope * derivative) }
+        Self { value, gradient: self.gradient * slope }
+    }
+
+    #[inline]
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        let by_factor = factor.gradient.times_plus(self.value, addend.gradient);
+        Self {
+            value: elementary::fused(self.value, factor.value, addend.value),
+            gradient: self.gradient.times_plus(factor.value, by_factor),
+        }
     }
 }
 
-impl<const N: usize> Neg for Dual<N> {
+impl<G: Gradient> Neg for Dual<G> {
     type Output = Self;
 
     #[inline]
@@ -184,45 +267,51 @@ impl<const N: usize> Neg for Dual<N> {
     }
 }
 
-impl<const N: usize> Add for Dual<N> {
+impl<G: Gradient> Add for Dual<G> {
     type Output = Self;
 
     #[inline]
     fn add(self, other: Self) -> Self {
-        Self::combine(self.value + other.value, &self, 1.0, &other, 1.0)
+        Self { value: self.value + other.value, gradient: self.gradient + other.gradient }
     }
 }
 
-impl<const N: usize> Sub for Dual<N> {
+impl<G: Gradient> Sub for Dual<G> {
     type Output = Self;
 
     #[inline]
     fn sub(self, other: Self) -> Self {
-        Self::combine(self.value - other.value, &self, 1.0, &other, -1.0)
+        self + -other
     }
 }
 
-impl<const N: usize> Mul for Dual<N> {
+impl<G: Gradient> Mul for Dual<G> {
     type Output = Self;
 
     #[inline]
     fn mul(self, other: Self) -> Self {
-        Self::combine(self.value * other.value, &self, other.value, &other, self.value)
+        Self {
+            value: self.value * other.value,
+            gradient: self.gradient.times_plus(other.value, other.gradient * self.value),
+        }
     }
 }
 
-impl<const N: usize> Div for Dual<N> {
+impl<G: Gradient> Div for Dual<G> {
     type Output = Self;
 
     #[inline]
     fn div(self, other: Self) -> Self {
         let inverse = other.value.recip();
         let quotient = self.value * inverse;
-        Self::combine(quotient, &self, inverse, &other, -quotient * inverse)
+        Self {
+            value: quotient,
+            gradient: self.gradient.times_plus(inverse, other.gradient * (-quotient * inverse)),
+        }
     }
 }
 
-impl<const N: usize> Add<f64> for Dual<N> {
+impl<G: Gradient> Add<f64> for Dual<G> {
     type Output = Self;
 
     #[inline]
@@ -231,7 +320,7 @@ impl<const N: usize> Add<f64> for Dual<N> {
     }
 }
 
-impl<const N: usize> Sub<f64> for Dual<N> {
+impl<G: Gradient> Sub<f64> for Dual<G> {
     type Output = Self;
 
     #[inline]
@@ -240,7 +329,7 @@ impl<const N: usize> Sub<f64> for Dual<N> {
     }
 }
 
-impl<const N: usize> Mul<f64> for Dual<N> {
+impl<G: Gradient> Mul<f64> for Dual<G> {
     type Output = Self;
 
     #[inline]
@@ -249,7 +338,7 @@ impl<const N: usize> Mul<f64> for Dual<N> {
     }
 }
 
-impl<const N: usize> Div<f64> for Dual<N> {
+impl<G: Gradient> Div<f64> for Dual<G> {
     type Output = Self;
 
     #[inline]
@@ -268,24 +357,27 @@ mod tests {
 
     #[test]
     fn functions_of_one_variable_give_the_same_gradient() {
-        let (x, y) = (Dual::<2>::variable(2.3, 0), Dual::variable(1.7, 1));
+        let [x, y, _] = variables([2.3, 1.7, 0.0]);
         let z = x * y;
         let apart = z.then(z.alone().exp() * z.alone().sqrt() + z.alone());
         let whole = z.exp() * z.sqrt() + z;
         assert!((apart.value - whole.value).abs() < 1e-12);
-        for k in 0..2 {
-            assert!((apart.gradient[k] - whole.gradient[k]).abs() < 1e-11);
+        for (one, other) in apart.gradient.array().into_iter().zip(whole.gradient.array()) {
+            assert!((one - other).abs() < 1e-11);
         }
     }
 
     #[test]
     fn gradient_agrees_with_central_differences() {
         let (x, y, step) = (2.3, 1.7, 1e-6);
-        let dual = formula(Dual::<2>::variable(x, 0), Dual::variable(y, 1));
+        let [dual_x, dual_y, _] = variables([x, y, 0.0]);
+        let dual = formula(dual_x, dual_y);
+        let [to_x, to_y, to_none] = dual.gradient.array();
         let by_x = (formula(x + step, y) - formula(x - step, y)) / (2.0 * step);
         let by_y = (formula(x, y + step) - formula(x, y - step)) / (2.0 * step);
         assert!((dual.value - formula(x, y)).abs() < 1e-14);
-        assert!((dual.gradient[0] - by_x).abs() < 1e-8, "{dual:?} {by_x}");
-        assert!((dual.gradient[1] - by_y).abs() < 1e-8, "{dual:?} {by_y}");
+        assert!((to_x - by_x).abs() < 1e-8, "{dual:?} {by_x}");
+        assert!((to_y - by_y).abs() < 1e-8, "{dual:?} {by_y}");
+        assert_eq!(to_none, 0.0);
     }
 }

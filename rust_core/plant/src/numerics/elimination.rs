@@ -3,6 +3,7 @@
 //! The order of elimination and every single operation are worked out in constant evaluation. At run time nothing
 //! is left of the bookkeeping: each operation is one multiplication and subtraction at a fixed place.
 
+use super::elementary::fused;
 use super::thermal_network::{LinkPorts, MAXIMUM_NODES, Node};
 
 /// Largest number of matrix entries that are not always zero.
@@ -49,7 +50,8 @@ impl Operation {
             Self::Invert { target } => entries[target as usize] = entries[target as usize].recip(),
             Self::Scale { target, factor } => entries[target as usize] *= entries[factor as usize],
             Self::Subtract { target, factor, source } => {
-                entries[target as usize] -= entries[factor as usize] * entries[source as usize];
+                entries[target as usize] =
+                    fused(-entries[factor as usize], entries[source as usize], entries[target as usize]);
             }
         }
     }
@@ -61,7 +63,8 @@ impl Operation {
             Self::None | Self::Invert { .. } => {}
             Self::Scale { target, factor } => vector[target as usize] *= entries[factor as usize],
             Self::Subtract { target, factor, source } => {
-                vector[target as usize] -= entries[factor as usize] * vector[source as usize];
+                vector[target as usize] =
+                    fused(-entries[factor as usize], vector[source as usize], vector[target as usize]);
             }
         }
     }

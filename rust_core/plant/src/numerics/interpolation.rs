@@ -38,10 +38,11 @@ impl Segment {
 }
 
 /// Piecewise linear function of one variable, with its integral.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct LinearTable {
-    /// Points of the axis between the first and the last.
-    inner: Vec<f64>,
+    /// All points of the axis but the last.
+    points: Points,
+    last: f64,
     /// What lies before the axis, its intervals, what lies beyond.
     segments: Vec<Segment>,
 }
@@ -71,21 +72,14 @@ impl LinearTable {
             segments.push(segment);
         }
         segments.push(flat(last, integral));
-        Self { inner: axis[1..last].to_vec(), segments }
+        Self { points: Points::new(&axis[..last]), last: axis[last], segments }
     }
 
     /// The straight piece that holds `x`.
     #[must_use]
     #[inline]
     pub fn segment(&self, x: f64) -> &Segment {
-        let last = self.segments.len() - 1;
-        if x < self.segments[0].from {
-            &self.segments[0]
-        } else if x > self.segments[last].from {
-            &self.segments[last]
-        } else {
-            &self.segments[1 + interval(&self.inner, x)]
-        }
+        &self.segments[self.points.passed_by(x) + usize::from(x > self.last)]
     }
 
     /// Value at `x`.
@@ -103,17 +97,30 @@ impl LinearTable {
     }
 }
 
-/// Interval that holds `x`, given the points between the first and the last. A plain search: the axes are short and
-/// neighbouring look-ups end at the same place.
-#[inline]
-fn interval(inner: &[f64], x: f64) -> usize {
-    inner.iter().position(|&point| x < point).unwrap_or(inner.len())
+/// Points to be compared with, four at a time; the last four are filled up with what compares with nothing.
+///
+/// All are counted, without a branch: many vehicles take turns, so where a search ends cannot be foreseen.
+#[derive(Debug, Clone)]
+struct Points(Vec<[f64; 4]>);
+
+impl Points {
+    fn new(points: &[f64]) -> Self {
+        let four = |some: &[f64]| std::array::from_fn(|k| some.get(k).copied().unwrap_or(f64::NAN));
+        Self(points.chunks(4).map(four).collect())
+    }
+
+    /// How many points `x` has reached.
+    #[inline]
+    fn passed_by(&self, x: f64) -> usize {
+        let count = |four: &[f64; 4]| four.map(|point| u64::from(x >= point)).iter().sum::<u64>();
+        self.0.iter().map(count).sum::<u64>() as usize
+    }
 }
 
 /// A rising axis, prepared for look-ups.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 struct Axis {
-    inner: Vec<f64>,
+    inner: Points,
     /// Where each interval begins and the reciprocal of its length.
     intervals: Vec<(f64, f64)>,
 }
@@ -121,7 +128,7 @@ struct Axis {
 impl Axis {
     fn new(points: &[f64]) -> Self {
         Self {
-            inner: points[1..points.len() - 1].to_vec(),
+            inner: Points::new(&points[1..points.len() - 1]),
             intervals: points.windows(2).map(|pair| (pair[0], (pair[1] - pair[0]).recip())).collect(),
         }
     }
@@ -129,14 +136,14 @@ impl Axis {
     /// Interval that holds `x` and the weight of its upper end, held at both ends.
     #[inline]
     fn locate(&self, x: f64) -> (usize, f64) {
-        let i = interval(&self.inner, x);
+        let i = self.inner.passed_by(x);
         let (from, per_length) = self.intervals[i];
         (i, ((x - from) * per_length).clamp(0.0, 1.0))
     }
 }
 
 /// Several piecewise bilinear functions on one grid (rows: first axis, columns: second axis).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct BilinearTable<const N: usize> {
     rows: Axis,
     columns: Axis,

@@ -2,6 +2,7 @@
 
 pub mod cubic_table;
 pub mod dual;
+pub mod elementary;
 mod elimination;
 pub mod interpolation;
 pub mod root;

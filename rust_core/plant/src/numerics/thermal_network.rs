@@ -5,6 +5,7 @@
 //! that loses it to the node that gains it. The nodes whose temperatures drive a link need not be those that
 //! exchange the heat: a coolant branch is driven by the supply temperature and takes its heat from the return node.
 
+use super::elementary::fused;
 use super::elimination::{Elimination, MAXIMUM_ENTRIES, unrolled};
 use std::marker::PhantomData;
 
@@ -257,7 +258,7 @@ impl<T: Topology> FactorisedStep<T> {
     pub fn advance(&self, temperatures_k: &NodeValues, sources_w: &NodeValues) -> NodeValues {
         let mut right = *sources_w;
         for i in 0..T::NODES {
-            right[i] += self.constant_w[i] + self.capacity_rates_w_k[i] * temperatures_k[i];
+            right[i] += fused(self.capacity_rates_w_k[i], temperatures_k[i], self.constant_w[i]);
         }
         self.substitute(right)
     }
