@@ -34,7 +34,7 @@ def trips(ambient_degc: list[float], duration_s: list[float]) -> Driven:
 
 
 some_trips = st.lists(
-    st.tuples(st.floats(-30.0, 45.0), st.floats(60.0, 2000.0)), min_size=1, max_size=30
+    st.tuples(st.floats(-10.0, 20.0), st.floats(60.0, 2000.0)), min_size=1, max_size=30
 ).map(lambda rows: trips([row[0] for row in rows], [row[1] for row in rows]))
 
 
@@ -58,19 +58,20 @@ def test_a_less_comfortable_trip_makes_no_climate_more_comfortable(
 
 
 def test_a_climate_is_read_from_the_trips_beside_it_alone() -> None:
-    driven = trips([-20.0, 5.0, 12.5, 20.0], [100.0, 100.0, 200.0, 100.0])
-    found = by_climate(np.array([7.0, 1.0, 4.0, 0.0]), driven, DEGC)
-    # Half of the third trip's time counts at 5 degC and half at 20 degC.
+    driven = trips([-20.0, -10.0, 5.0, 12.5, 20.0, 20.1], [100.0, 100.0, 100.0, 200.0, 100.0, 100.0])
+    found = by_climate(np.array([9.0, 7.0, 1.0, 4.0, 0.0, 9.0]), driven, DEGC)
+    # Half of the fourth trip's time counts at 5 degC and half at 20 degC; the first and the last are beyond.
     assert found.tolist() == [7.0, 2.5, 2.0]
 
 
 def test_the_rules_themselves_are_within_the_constraint_and_idle_vehicles_are_not() -> None:
     made = training()
     rules = constraint(made)
-    excess_k = rules.update(
+    look = rules.update(
         100, lambda observations, _: np.zeros((len(observations), 8), dtype=np.int64), masked=False
     )
-    assert excess_k[0] > 5.0
+    assert look.excess_k[0] > 5.0
+    assert look.goal < -20.0 * look.excess_k.min()
     # As far as a step and the bound allow.
     assert rules.multipliers[0] == pytest.approx(0.2)
     for number in range(2, 6):
@@ -86,8 +87,10 @@ def test_damping_passes_with_the_violation_and_a_start_lasts() -> None:
             training("comfort_constraint.start=0.1", "comfort_constraint.largest=9.0", *changes)
         )
         np.testing.assert_array_equal(weighed.multipliers, 0.1)
-        excess_k = weighed.update(100, lambda seen, _: np.zeros((len(seen), 8), dtype=np.int64), masked=False)
-        return np.stack([np.clip(excess_k, -1.0, 1.0), weighed.multipliers, weighed.notes()["integrals"]])
+        look = weighed.update(100, lambda seen, _: np.zeros((len(seen), 8), dtype=np.int64), masked=False)
+        return np.stack(
+            [np.clip(look.excess_k, -1.0, 1.0), weighed.multipliers, weighed.notes()["integrals"]]
+        )
 
     plain, damped = after(), after("comfort_constraint.damping_per_k=0.7")
     np.testing.assert_array_equal(plain[2], damped[2])

@@ -16,9 +16,9 @@ SMALL = (
 )
 
 
-def small(*changes: str) -> imitation.OnPolicyTraining:
-    training = configuration.load("ppo", [*SMALL, *changes])
-    assert isinstance(training, configuration.PPOTraining)
+def small(name: str = "ppo") -> imitation.OnPolicyTraining:
+    training = configuration.load(name, SMALL)
+    assert isinstance(training, configuration.PPOTraining | configuration.MaskablePPOTraining)
     return training
 
 
@@ -30,8 +30,11 @@ def test_returns_end_with_the_trip_and_are_unknown_without_an_end() -> None:
     assert known.tolist() == [[True, False], [True, False], [False, False]]
 
 
-def test_imitation_makes_the_teachers_actions_more_likely_than_those_of_an_untrained_policy() -> None:
-    training = small()
+@pytest.mark.parametrize("name", ["ppo", "maskable-ppo"])
+def test_imitation_makes_the_teachers_actions_more_likely_than_those_of_an_untrained_policy(
+    name: str,
+) -> None:
+    training = small(name)
     assert training.imitation is not None
     envs = environments.make(training)
     model = algorithms.make(training, envs, 0)

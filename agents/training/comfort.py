@@ -1,5 +1,6 @@
 """Comfort that must hold in every climate: discomfort weighs more where it exceeds that of rules."""
 
+from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
@@ -7,6 +8,19 @@ from numpy.typing import NDArray
 
 from agents.training.configuration import ComfortConstraintSettings, Training
 from agents.training.trips import Decide, Driven, FixedTrips
+
+
+@dataclass(frozen=True)
+class Look:
+    """What a policy did on the constraint's trips.
+
+    Attributes:
+        excess_k: By how much each climate's discomfort exceeds what is allowed.
+        goal: Mean score of a trip less a penalty on the excess, points: what is to be made large.
+    """
+
+    excess_k: NDArray[np.float64]
+    goal: float
 
 
 class ComfortConstraint:
@@ -60,12 +74,8 @@ class ComfortConstraint:
         """Whether so many decisions ask for an update."""
         return decisions >= self._next_update
 
-    def update(self, decisions: int, decide: Decide, *, masked: bool) -> NDArray[np.float64]:
-        """Drives a policy without chance and moves the multipliers.
-
-        Returns:
-            By how much each climate's discomfort exceeds what is allowed [K].
-        """
+    def update(self, decisions: int, decide: Decide, *, masked: bool) -> Look:
+        """Drives a policy without chance and moves the multipliers."""
         settings = self._settings
         self._next_update = decisions + settings.interval_decisions
         driven = self._trips.of_policy(decide, masked=masked)
@@ -75,7 +85,12 @@ class ComfortConstraint:
         self._integrals = np.clip(self._integrals + settings.step_per_k * counted_k, 0.0, settings.largest)
         damped = self._integrals + settings.damping_per_k * counted_k
         self._multipliers = np.clip(damped, 0.0, settings.largest)
-        return excess_k
+        return Look(excess_k, self._goal(driven, excess_k))
+
+    def _goal(self, driven: Driven, excess_k: NDArray[np.float64]) -> float:
+        times = climate_times(driven, self._settings.ambient_degc).sum(axis=0)
+        beyond_k = np.average(np.maximum(excess_k, 0.0), weights=times) if times.any() else 0.0
+        return float(driven.score.mean() - self._settings.penalty_per_k * beyond_k)
 
     def notes(self) -> dict[str, Any]:
         """Returns what a checkpoint must remember."""
@@ -90,17 +105,26 @@ class ComfortConstraint:
 def by_climate(values: NDArray[np.float64], driven: Driven, ambient_degc: list[float]) -> NDArray[np.float64]:
     """Mean over time of values of trips at given ambient temperatures.
 
-    A trip counts for the two that enclose its own, the nearer one more: what is read off the result by linear
-    interpolation is the trips' own. 0 where there is no trip.
+    0 where there is no trip.
 
     Args:
         values: One a trip.
         driven: The trips.
         ambient_degc: Ambient temperatures, rising.
     """
-    places = np.interp(driven.ambient_degc, ambient_degc, np.arange(len(ambient_degc)))
-    shares = np.maximum(1.0 - np.abs(places[:, None] - np.arange(len(ambient_degc))), 0.0)
-    times = shares * driven.duration_s[:, None]
+    times = climate_times(driven, ambient_degc)
     total = times.sum(axis=0)
     means: NDArray[np.float64] = np.divide(values @ times, total, out=np.zeros_like(total), where=total > 0.0)
     return means
+
+
+def climate_times(driven: Driven, ambient_degc: list[float]) -> NDArray[np.float64]:
+    """Time that each trip counts for each ambient temperature [s], one row a trip.
+
+    It counts for the two that enclose its own, the nearer one more; a trip beyond them for none.
+    """
+    places = np.interp(driven.ambient_degc, ambient_degc, np.arange(len(ambient_degc)))
+    shares = np.maximum(1.0 - np.abs(places[:, None] - np.arange(len(ambient_degc))), 0.0)
+    within = (driven.ambient_degc >= ambient_degc[0]) & (driven.ambient_degc <= ambient_degc[-1])
+    times: NDArray[np.float64] = shares * (driven.duration_s * within)[:, None]
+    return times

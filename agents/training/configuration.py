@@ -115,13 +115,15 @@ class ComfortConstraintSettings(_Table):
     interval_decisions: Count
     """Between two looks at fixed trips, after each of which the weight moves."""
     ambient_degc: Annotated[list[float], Field(min_length=1)]
-    """Ambient temperatures in degC, rising; between them weights are interpolated."""
+    """Ambient temperatures in degC, rising; between them weights are interpolated, beyond them held."""
     rules: str = "hpcu"
     """Controller that must not be more comfortable, by name or path."""
     margin_k: NotNegative = 0.0
     """By how much the policy must be more comfortable."""
     margin_share: Share = 1.0
     """Largest margin as a share of the rules' discomfort."""
+    penalty_per_k: NotNegative = 20.0
+    """Points that a Kelvin of violation costs where policies (and rules, in tuning) are compared."""
     trips: Count = 256
     seed: Annotated[int, Field(ge=0)] = 2_000_000
     start: NotNegative = 0.0

@@ -8,6 +8,7 @@ import numpy as np
 import torch
 from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
+from sb3_contrib.common.maskable.policies import MaskableActorCriticPolicy
 from stable_baselines3.common.on_policy_algorithm import OnPolicyAlgorithm
 from stable_baselines3.common.policies import ActorCriticPolicy, BasePolicy
 from stable_baselines3.common.vec_env import VecNormalize
@@ -132,7 +133,7 @@ def fit(
 ) -> None:
     """Makes the teacher's actions in all rounds likely, and the value function the last one's returns."""
     policy = model.policy
-    assert isinstance(policy, ActorCriticPolicy)
+    assert isinstance(policy, ActorCriticPolicy | MaskableActorCriticPolicy)
     assert model.env is not None
     wrapper = environments.normaliser(model.env)
     seen = np.concatenate([shown.observations for shown in rounds])

@@ -17,9 +17,6 @@ from hp_gym.vector_env import EVHeatPumpVectorEnv
 POLICY: Final = "ppo"
 """Training configuration whose reward and comfort constraint are the rules', too."""
 
-PENALTY_PER_K: Final = 20.0
-"""Points for each Kelvin of discomfort beyond what is allowed: ten times what comfort costs there."""
-
 
 class Objective:
     """Mean score of rules over the same training trips of a band, no less comfortable than the paper's.
@@ -39,13 +36,14 @@ class Objective:
         training = configuration.load(POLICY)
         assert training.comfort_constraint is not None
         self._reward = training.environment.reward
+        self._penalty_per_k = training.comfort_constraint.penalty_per_k
         _, papers_k = self._drive(rules.PAPER)
         self._allowed_k = papers_k - training.comfort_constraint.margin_for(papers_k)
 
     def score(self, choices: rules.Choices) -> float:
-        """Returns points a trip; more is better. Discomfort beyond what is allowed costs `PENALTY_PER_K`."""
+        """Returns points a trip; more is better. Discomfort beyond what is allowed costs a penalty."""
         score, discomfort_k = self._drive(choices)
-        return score - PENALTY_PER_K * max(discomfort_k - self._allowed_k, 0.0)
+        return score - self._penalty_per_k * max(discomfort_k - self._allowed_k, 0.0)
 
     def _drive(self, choices: rules.Choices) -> tuple[float, float]:
         """Mean score of a trip, and mean discomfort over time [K]."""
