@@ -16,8 +16,8 @@ SMALL = (
 )
 
 
-def small(name: str = "ppo") -> imitation.OnPolicyTraining:
-    training = configuration.load(name, SMALL)
+def small(*changes: str, name: str = "ppo") -> imitation.OnPolicyTraining:
+    training = configuration.load(name, [*SMALL, *changes])
     assert isinstance(training, configuration.PPOTraining | configuration.MaskablePPOTraining)
     return training
 
@@ -34,7 +34,7 @@ def test_returns_end_with_the_trip_and_are_unknown_without_an_end() -> None:
 def test_imitation_makes_the_teachers_actions_more_likely_than_those_of_an_untrained_policy(
     name: str,
 ) -> None:
-    training = small(name)
+    training = small(name=name)
     assert training.imitation is not None
     envs = environments.make(training)
     model = algorithms.make(training, envs, 0)
