@@ -67,11 +67,10 @@ def test_a_climate_is_read_from_the_trips_beside_it_alone() -> None:
 def test_the_rules_themselves_are_within_the_constraint_and_idle_vehicles_are_not() -> None:
     made = training()
     rules = constraint(made)
-    look = rules.update(
+    excess_k = rules.update(
         100, lambda observations, _: np.zeros((len(observations), 8), dtype=np.int64), masked=False
     )
-    assert look.excess_k[0] > 5.0
-    assert look.goal < -20.0 * look.excess_k.min()
+    assert excess_k[0] > 5.0
     # As far as a step and the bound allow.
     assert rules.multipliers[0] == pytest.approx(0.2)
     for number in range(2, 6):
@@ -87,10 +86,8 @@ def test_damping_passes_with_the_violation_and_a_start_lasts() -> None:
             training("comfort_constraint.start=0.1", "comfort_constraint.largest=9.0", *changes)
         )
         np.testing.assert_array_equal(weighed.multipliers, 0.1)
-        look = weighed.update(100, lambda seen, _: np.zeros((len(seen), 8), dtype=np.int64), masked=False)
-        return np.stack(
-            [np.clip(look.excess_k, -1.0, 1.0), weighed.multipliers, weighed.notes()["integrals"]]
-        )
+        excess_k = weighed.update(100, lambda seen, _: np.zeros((len(seen), 8), dtype=np.int64), masked=False)
+        return np.stack([np.clip(excess_k, -1.0, 1.0), weighed.multipliers, weighed.notes()["integrals"]])
 
     plain, damped = after(), after("comfort_constraint.damping_per_k=0.7")
     np.testing.assert_array_equal(plain[2], damped[2])

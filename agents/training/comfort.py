@@ -1,6 +1,5 @@
 """Comfort that must hold in every climate: discomfort weighs more where it exceeds that of rules."""
 
-from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
@@ -8,19 +7,6 @@ from numpy.typing import NDArray
 
 from agents.training.configuration import ComfortConstraintSettings, Training
 from agents.training.trips import Decide, Driven, FixedTrips
-
-
-@dataclass(frozen=True)
-class Look:
-    """What a policy did on the constraint's trips.
-
-    Attributes:
-        excess_k: By how much each climate's discomfort exceeds what is allowed.
-        goal: Mean score of a trip less a penalty on the excess, points: what is to be made large.
-    """
-
-    excess_k: NDArray[np.float64]
-    goal: float
 
 
 class ComfortConstraint:
@@ -56,12 +42,13 @@ class ComfortConstraint:
         """
         of_rules = FixedTrips(training, settings.trips, settings.seed).of_rules(settings.rules)
         reached_k = by_climate(of_rules.discomfort_k, of_rules, settings.ambient_degc)
+        margin_k = np.minimum(settings.margin_k, settings.margin_share * reached_k)
         start = [settings.start] * len(settings.ambient_degc)
         notes = {
             "next_update": settings.interval_decisions,
             "multipliers": start,
             "integrals": start,
-            "allowed_k": [each - settings.margin_for(each) for each in reached_k.tolist()],
+            "allowed_k": (reached_k - margin_k).tolist(),
         }
         return cls(training, settings, notes)
 
@@ -74,8 +61,12 @@ class ComfortConstraint:
         """Whether so many decisions ask for an update."""
         return decisions >= self._next_update
 
-    def update(self, decisions: int, decide: Decide, *, masked: bool) -> Look:
-        """Drives a policy without chance and moves the multipliers."""
+    def update(self, decisions: int, decide: Decide, *, masked: bool) -> NDArray[np.float64]:
+        """Drives a policy without chance and moves the multipliers.
+
+        Returns:
+            By how much each climate's discomfort exceeds what is allowed [K].
+        """
         settings = self._settings
         self._next_update = decisions + settings.interval_decisions
         driven = self._trips.of_policy(decide, masked=masked)
@@ -85,12 +76,7 @@ class ComfortConstraint:
         self._integrals = np.clip(self._integrals + settings.step_per_k * counted_k, 0.0, settings.largest)
         damped = self._integrals + settings.damping_per_k * counted_k
         self._multipliers = np.clip(damped, 0.0, settings.largest)
-        return Look(excess_k, self._goal(driven, excess_k))
-
-    def _goal(self, driven: Driven, excess_k: NDArray[np.float64]) -> float:
-        times = climate_times(driven, self._settings.ambient_degc).sum(axis=0)
-        beyond_k = np.average(np.maximum(excess_k, 0.0), weights=times) if times.any() else 0.0
-        return float(driven.score.mean() - self._settings.penalty_per_k * beyond_k)
+        return excess_k
 
     def notes(self) -> dict[str, Any]:
         """Returns what a checkpoint must remember."""

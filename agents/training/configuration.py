@@ -122,8 +122,6 @@ class ComfortConstraintSettings(_Table):
     """By how much the policy must be more comfortable."""
     margin_share: Share = 1.0
     """Largest margin as a share of the rules' discomfort."""
-    penalty_per_k: NotNegative = 20.0
-    """Points that a Kelvin of violation costs where policies (and rules, in tuning) are compared."""
     trips: Count = 256
     seed: Annotated[int, Field(ge=0)] = 2_000_000
     start: NotNegative = 0.0
@@ -134,10 +132,6 @@ class ComfortConstraintSettings(_Table):
     """Passing change for each Kelvin of violation (at most one): a policy that follows late overshoots."""
     largest: Positive = 3.0
     """Largest addition to the weight, where the condition cannot be met."""
-
-    def margin_for(self, discomfort_k: float) -> float:
-        """Returns by how much to be more comfortable than rules with this discomfort [K]."""
-        return min(self.margin_k, self.margin_share * discomfort_k)
 
     @field_validator("ambient_degc")
     @classmethod

@@ -38,7 +38,7 @@ class RunFolder:
     | `validation.csv` | a row for each validation |
     | `checkpoints/*.pt` | the latest two |
     | `tensorboard/` | logs |
-    | `best.safetensors`, `final.safetensors` | policies: best and last |
+    | `best.safetensors`, `final.safetensors` | policies: best on the validation trips, and last |
     | `final.zip` | the last model as stable-baselines3 saves it |
 
     Args:

@@ -79,7 +79,6 @@ class Watch(BaseCallback):
         self._comfort = None
         if constraint is not None:
             self._comfort = ComfortConstraint(run.training, constraint, notes["comfort"])
-        self._best_goal: float | None = notes.get("best_goal")
 
     @property
     def history(self) -> list[dict[str, Any]]:
@@ -115,9 +114,7 @@ class Watch(BaseCallback):
         return True
 
     def finish(self) -> None:
-        """Looks a last time and writes what the training leaves."""
-        if self._comfort is not None:
-            self._hold_comfort(self._comfort)
+        """Validates a last time and writes what the training leaves."""
         if not self._history or self._history[-1]["decisions"] != self.model.num_timesteps:
             self._validate()
         self._save_policy("final")
@@ -154,7 +151,7 @@ class Watch(BaseCallback):
         row = {"decisions": self.model.num_timesteps, "wall_s": round(self.wall_s(), 1), **asdict(figures)}
         self._history.append(row | {f"hpcu_{key}": value for key, value in asdict(self._rules).items()})
         self._folder.write_history(self._history)
-        if self._comfort is None and (not earlier or figures.score > max(earlier)):
+        if not earlier or figures.score > max(earlier):
             self._save_policy("best")
         for key, value in asdict(figures).items():
             self.logger.record(f"validation/{key}", value)
@@ -169,15 +166,11 @@ class Watch(BaseCallback):
     def _hold_comfort(self, comfort: ComfortConstraint) -> None:
         began_s = perf_counter()
         decide, masked = self._decide()
-        look = comfort.update(self.model.num_timesteps, decide, masked=masked)
+        excess_k = comfort.update(self.model.num_timesteps, decide, masked=masked)
         self._weigh_comfort()
-        if self._best_goal is None or look.goal > self._best_goal:
-            self._best_goal = look.goal
-            self._save_policy("best")
-        self.logger.record("comfort/goal", look.goal)
         assert self._training.comfort_constraint is not None
         degc = self._training.comfort_constraint.ambient_degc
-        for ambient_degc, excess, multiplier in zip(degc, look.excess_k, comfort.multipliers, strict=True):
+        for ambient_degc, excess, multiplier in zip(degc, excess_k, comfort.multipliers, strict=True):
             self.logger.record(f"comfort/excess_k_at_{ambient_degc:g}_degc", float(excess))
             self.logger.record(f"comfort/multiplier_at_{ambient_degc:g}_degc", float(multiplier))
         self._validation_s += perf_counter() - began_s
@@ -218,7 +211,6 @@ class Watch(BaseCallback):
             "history": self._history,
             "rules": asdict(self._rules),
             "comfort": self._comfort.notes() if self._comfort is not None else {},
-            "best_goal": self._best_goal,
             "next_validation": self._next_validation,
             "next_checkpoint": self._next_checkpoint,
             "wall_s": self.wall_s(),

@@ -8,14 +8,20 @@ from typing import Final
 
 import numpy as np
 
-from agents.training import configuration
 from agents.tuning import rules
 from agents.tuning.bands import Band, training_distribution
 from hp_gym.policies import HpcuPolicy
 from hp_gym.vector_env import EVHeatPumpVectorEnv
 
-POLICY: Final = "ppo"
-"""Training configuration whose reward and comfort constraint are the rules', too."""
+REWARD: Final = "reference"
+"""What the reference policies are trained for, too (configs/rewards/reference.toml)."""
+
+MARGIN_K: Final = 2.0
+MARGIN_SHARE: Final = 0.3
+"""By how much rules must be more comfortable than the paper's: the lesser of Kelvins and share."""
+
+PENALTY_PER_K: Final = 20.0
+"""Points for each Kelvin of discomfort beyond what is allowed: ten times what comfort costs there."""
 
 
 class Objective:
@@ -33,17 +39,13 @@ class Objective:
         self._distribution = distribution
         self._trips = trips
         self._seed = seed
-        training = configuration.load(POLICY)
-        assert training.comfort_constraint is not None
-        self._reward = training.environment.reward
-        self._penalty_per_k = training.comfort_constraint.penalty_per_k
         _, papers_k = self._drive(rules.PAPER)
-        self._allowed_k = papers_k - training.comfort_constraint.margin_for(papers_k)
+        self._allowed_k = papers_k - min(MARGIN_K, MARGIN_SHARE * papers_k)
 
     def score(self, choices: rules.Choices) -> float:
-        """Returns points a trip; more is better. Discomfort beyond what is allowed costs a penalty."""
+        """Returns points a trip; more is better. Discomfort beyond what is allowed costs `PENALTY_PER_K`."""
         score, discomfort_k = self._drive(choices)
-        return score - self._penalty_per_k * max(discomfort_k - self._allowed_k, 0.0)
+        return score - PENALTY_PER_K * max(discomfort_k - self._allowed_k, 0.0)
 
     def _drive(self, choices: rules.Choices) -> tuple[float, float]:
         """Mean score of a trip, and mean discomfort over time [K]."""
@@ -55,7 +57,7 @@ class Objective:
                 distribution=self._distribution,
                 continuous=True,
                 actions=HpcuPolicy.ACTIONS,
-                reward=self._reward,
+                reward=REWARD,
                 overrides={"scenario.controller": str(file)},
             )
             env.reset(seed=self._seed)
