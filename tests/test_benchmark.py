@@ -350,13 +350,16 @@ def test_front_settings_move_ambient_bands_too(tmp_path: Path) -> None:
         "controller.htc_set_point_degc = 80.0\ncontroller.battery.heat_up_to_degc = 5.0\n",
         encoding="utf-8",
     )
-    front = grid.Front(family=str(family), cabin_offsets_k=(-2.0,), htc_offsets_k=(-20.0, 20.0))
+    front = grid.Front.model_construct(
+        family=str(family), cabin_offsets_k=(-2.0,), htc_offsets_k=(-20.0, 20.0), ptc_offsets_k=(4.0,)
+    )
     made = fronts.settings(front, tmp_path / "made")
     written = [
         fronts._values(setting.controller.environment["overrides"]["scenario.controller"]) for setting in made
     ]
     assert [values["cabin_set_point_degc"] for values in written] == [20.0, 20.0]
     assert [values["htc_set_point_degc"] for values in written] == [40.0, 80.0]
+    assert [values["ptc_from_deviation_k"] for values in written] == [-96.0, -96.0]
     assert [values["ambient_bands"][0]["controller"]["htc_set_point_degc"] for values in written] == [
         60.0,
         90.0,

@@ -91,26 +91,17 @@ class ComfortConstraint:
 def by_climate(values: NDArray[np.float64], driven: Driven, ambient_degc: list[float]) -> NDArray[np.float64]:
     """Mean over time of values of trips at given ambient temperatures.
 
-    0 where there is no trip.
+    A trip counts for the two that enclose its own, the nearer one more, and beyond all for the last. 0 where
+    there is no trip.
 
     Args:
         values: One a trip.
         driven: The trips.
         ambient_degc: Ambient temperatures, rising.
     """
-    times = climate_times(driven, ambient_degc)
+    places = np.interp(driven.ambient_degc, ambient_degc, np.arange(len(ambient_degc)))
+    shares = np.maximum(1.0 - np.abs(places[:, None] - np.arange(len(ambient_degc))), 0.0)
+    times = shares * driven.duration_s[:, None]
     total = times.sum(axis=0)
     means: NDArray[np.float64] = np.divide(values @ times, total, out=np.zeros_like(total), where=total > 0.0)
     return means
-
-
-def climate_times(driven: Driven, ambient_degc: list[float]) -> NDArray[np.float64]:
-    """Time that each trip counts for each ambient temperature [s], one row a trip.
-
-    It counts for the two that enclose its own, the nearer one more; a trip beyond them for none.
-    """
-    places = np.interp(driven.ambient_degc, ambient_degc, np.arange(len(ambient_degc)))
-    shares = np.maximum(1.0 - np.abs(places[:, None] - np.arange(len(ambient_degc))), 0.0)
-    within = (driven.ambient_degc >= ambient_degc[0]) & (driven.ambient_degc <= ambient_degc[-1])
-    times: NDArray[np.float64] = shares * (driven.duration_s * within)[:, None]
-    return times
