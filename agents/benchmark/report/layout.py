@@ -17,7 +17,7 @@ PAPER: Final = "hpcu"
 _RIVALS: Final[Mapping[str, str]] = {
     "hpcu": "the paper's rules (hpcu), any cabin set point",
     "hpcu_any_htc": "hpcu with any cabin and HTC set point",
-    "hpcu_tuned": "the tuned rules (hpcu-tuned), any cabin and HTC set point",
+    "hpcu_tuned": "the tuned rules (hpcu-tuned), any cabin, HTC and PTC set point",
 }
 
 
