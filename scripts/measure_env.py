@@ -9,9 +9,9 @@ uv run python scripts/measure_env.py
 from typing import Any
 
 import gymnasium as gym
-import numpy as np
 
 import hp_gym
+from agents.training.trips import drive
 from hp_gym.policies import HpcuPolicy
 from hp_gym.vector_env import EVHeatPumpVectorEnv
 
@@ -41,15 +41,9 @@ def tuned_rules(control_interval_s: int) -> tuple[float, float]:
         control_interval_s=control_interval_s,
         overrides={"scenario.controller": "hpcu-tuned"},
     )
-    envs.reset(seed=list(range(FIRST_SEED, FIRST_SEED + TRIPS)))
-    found = np.full((TRIPS, 2), np.nan)
-    while np.isnan(found).any():
-        _, _, terminated, _, _ = envs.step(envs.rule_based_actions())
-        for index in np.flatnonzero(terminated & np.isnan(found[:, 0])).tolist():
-            kpis = envs.kpis(index)
-            found[index] = kpis["attributable_energy_kwh"], kpis["discomfort_k"]
-    energy_kwh, discomfort_k = found.mean(axis=0).tolist()
-    return energy_kwh, discomfort_k
+    seeds = range(FIRST_SEED, FIRST_SEED + TRIPS)
+    driven = drive(envs, seeds, lambda *_: envs.rule_based_actions())
+    return float(driven.attributable_energy_kwh.mean()), float(driven.discomfort_k.mean())
 
 
 def main() -> None:

@@ -1,6 +1,6 @@
 """Trips that are the same every time: what a training is watched on."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -79,36 +79,45 @@ class FixedTrips:
         }
         envs = self._envs(rules_arguments)
         rules = HpcuPolicy(envs)
-        return self._drive(envs, lambda *_: rules(), masked=False)
+        return drive(envs, self._seeds, lambda *_: rules())
 
     def of_policy(self, decide: Decide, *, masked: bool) -> Driven:
         """Drives a policy."""
-        return self._drive(self._envs(self._policy_arguments), decide, masked=masked)
+        return drive(self._envs(self._policy_arguments), self._seeds, decide, masked=masked)
 
     def _envs(self, arguments: dict[str, Any]) -> EVHeatPumpVectorEnv:
         return EVHeatPumpVectorEnv(len(self._seeds), **self._trip_arguments, **arguments)
 
-    def _drive(self, envs: EVHeatPumpVectorEnv, decide: Decide, *, masked: bool) -> Driven:
-        observations, _ = envs.reset(seed=self._seeds)
-        trips = range(len(self._seeds))
-        ambient_degc = [envs.signals(index)["ambient_temperature_degc"] for index in trips]
-        ends: list[dict[str, float]] = [{} for _ in trips]
-        under_way = np.ones(len(ends), dtype=np.bool_)
-        while under_way.any():
-            masks = envs.action_masks() if masked else None
-            observations, _, terminated, _, infos = envs.step(decide(observations, masks))
-            # Environments whose trip has ended begin another one, which is not counted.
-            for index in np.flatnonzero(terminated & under_way).tolist():
-                arrived = float(infos["end_reason"][index] == "arrived")
-                ends[index] = {
-                    **envs.kpis(index),
-                    "arrived": arrived,
-                    "duration_s": envs.summary(index)["duration_s"],
-                }
-            under_way &= ~terminated
-        envs.close()
-        values = {name: np.array([end[name] for end in ends]) for name in _OF_THE_END}
-        return Driven(ambient_degc=np.array(ambient_degc), **values)
+
+def drive(envs: EVHeatPumpVectorEnv, seeds: Sequence[int], decide: Decide, *, masked: bool = False) -> Driven:
+    """Drives the first trip of each environment to its end, then closes them.
+
+    Args:
+        envs: Environments, one a seed.
+        seeds: Seeds of the trips.
+        decide: Who drives.
+        masked: Whether it is told what the plant would grant.
+    """
+    observations, _ = envs.reset(seed=list(seeds))
+    trips = range(len(seeds))
+    ambient_degc = [envs.signals(index)["ambient_temperature_degc"] for index in trips]
+    ends: list[dict[str, float]] = [{} for _ in trips]
+    under_way = np.ones(len(ends), dtype=np.bool_)
+    while under_way.any():
+        masks = envs.action_masks() if masked else None
+        observations, _, terminated, _, infos = envs.step(decide(observations, masks))
+        # Environments whose trip has ended begin another one, which is not counted.
+        for index in np.flatnonzero(terminated & under_way).tolist():
+            arrived = float(infos["end_reason"][index] == "arrived")
+            ends[index] = {
+                **envs.kpis(index),
+                "arrived": arrived,
+                "duration_s": envs.summary(index)["duration_s"],
+            }
+        under_way &= ~terminated
+    envs.close()
+    values = {name: np.array([end[name] for end in ends]) for name in _OF_THE_END}
+    return Driven(ambient_degc=np.array(ambient_degc), **values)
 
 
 _OF_THE_END = ("duration_s", "score", "attributable_energy_kwh", "discomfort_k", "arrived")
