@@ -147,9 +147,9 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     ## Starting State
 
     A car parked for long, everything at the same temperature except where the scenario says otherwise. Trips
-    come from a scenario (always the same) or are drawn from a distribution: `train-v0` (-20 to 40 degC, city
-    and mixed cycles, whole or in parts) by default, `test-v0` (other cycles, other climates) for a held-out
-    test.
+    come from a scenario (always the same) or are drawn from a distribution: `train-v1` (-20 to 40 degC, city,
+    mixed and motorway cycles, whole or in parts) by default, `test-v0` (other cycles, other climates) for a
+    held-out test.
 
     ## Episode End
 
@@ -173,7 +173,7 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     |----------------------|--------------|------------------------------------------------------------------|
     | `render_mode`        | `None`       | `"rgb_array"` or `"human"`                                       |
     | `scenario`           | `None`       | id or path of a scenario, always driven                          |
-    | `distribution`       | `"train-v0"` | name or path of a distribution that trips are drawn from         |
+    | `distribution`       | `"train-v1"` | name or path of a distribution that trips are drawn from         |
     | `continuous`         | `False`      | `Box` instead of `MultiDiscrete`                                 |
     | `actions`            | `"default"`  | `"default"`, `"hpcu"`, `"all"` or names of actuators             |
     | `observations`       | `"default"`  | names of rows or groups (`"default"`, `"preview"`)               |

@@ -20,7 +20,7 @@ from hp_gym.overrides import Overrides, Value, assignments
 Action: TypeAlias = NDArray[np.int64] | NDArray[np.float32]
 Name: TypeAlias = str | os.PathLike[str]
 
-DEFAULT_DISTRIBUTION: Final = "train-v0"
+DEFAULT_DISTRIBUTION: Final = "train-v1"
 
 HPCU_ACTIONS: Final = (
     *ACTUATORS[:8],

@@ -1,10 +1,11 @@
 """Writes configs/cycles/*.csv from the packages that carry the published speed schedules.
 
-Run in an environment of its own, as the packages pin old dependencies that are not needed here:
+The packages pin old dependencies, and one has wheels for older versions of Python only, but nothing of them
+is run; so without dependencies, in a folder of their own:
 
-    pip install fastsim==3.1.0
-    pip install --no-deps wltp==0.1.2a0 carculator_utils==1.3.5
-    python scripts/make_cycles.py
+    uv pip install --no-deps --python-version 3.10 --target out/cycle-packages \
+        fastsim==2.1.2 wltp==0.1.2a0 carculator_utils==1.3.5
+    PYTHONPATH=out/cycle-packages python scripts/make_cycles.py
 """
 
 import csv
@@ -21,6 +22,7 @@ CYCLES = Path(__file__).resolve().parents[1] / "configs" / "cycles"
 KM_H_PER_MPH = 1.609344
 KM_H_PER_M_S = 3.6
 
+GTR_2 = "UN Global Technical Regulation No. 2, Annex 5, parts 1, 2 and 3 for class 3"
 GTR_15 = "UN Global Technical Regulation No. 15, Annex 1, class 3b"
 R83 = "UN Regulation No. 83, type I test: four ECE 15 cycles and one EUDC"
 EPA = "US EPA dynamometer schedule, 0.1 mph steps"
@@ -91,6 +93,20 @@ def wltc_class3b() -> Cycle:
     )
 
 
+def wltc_class2() -> Cycle:
+    """The WLTC for cars of 22 to 34 W/kg."""
+    data = runpy.run_path(str(packaged_file("wltp", "wltp/cycles/class2.py")))["class_data"]()
+    return Cycle(
+        id="wltc-class2",
+        title="WLTC class 2: low, medium, high and extra-high phases of 589, 433, 455 and 323 s",
+        published_in=GTR_15.replace("3b", "2"),
+        package="wltp",
+        licence=f"{FACTS} EUPL 1.1+",
+        speed_km_h=data["cycle"],
+        decimals=1,
+    )
+
+
 def nedc() -> Cycle:
     """The NEDC with the regulation's gear-change plateaus of a manual gearbox.
 
@@ -111,11 +127,7 @@ def nedc() -> Cycle:
 
 def epa(cycle_id: str, title: str) -> Cycle:
     """A US schedule: back to its tenths of mph, which fastsim holds as rounded m/s, then to km/h."""
-    # Imported here: no other cycle needs this package.
-    from fastsim import Cycle as FastsimCycle
-
-    speed_m_s = FastsimCycle.from_resource(f"{cycle_id}.csv").to_pydict()["speed_meters_per_second"]
-    speed_mph = [round(speed * KM_H_PER_M_S / KM_H_PER_MPH, 1) for speed in speed_m_s]
+    speed_mph = [round(speed * KM_H_PER_M_S / KM_H_PER_MPH, 1) for speed in fastsim_m_s(cycle_id)]
     return Cycle(
         id=cycle_id,
         title=title,
@@ -125,6 +137,39 @@ def epa(cycle_id: str, title: str) -> Cycle:
         speed_km_h=[speed * KM_H_PER_MPH for speed in speed_mph],
         decimals=3,
     )
+
+
+def wmtc() -> Cycle:
+    """The cycle of large motorcycles, up to 125 km/h: town, country and motorway, ten minutes each."""
+    return Cycle(
+        id="wmtc-class3",
+        title="WMTC class 3: parts 1, 2 and 3 of 600 s each",
+        published_in=GTR_2,
+        package="fastsim",
+        licence=f"{FACTS} Apache-2.0",
+        speed_km_h=[speed * KM_H_PER_M_S for speed in fastsim_m_s("wmtc_all")],
+        decimals=1,
+    )
+
+
+def wmtc_part3_twice() -> Cycle:
+    """Motorway alone, as long as a drive to work; such cycles for cars are held out."""
+    once = fastsim_m_s("wmtc_part3")
+    return Cycle(
+        id="wmtc-part3-twice",
+        title="WMTC part 3-2, motorway, driven twice",
+        published_in=GTR_2,
+        package="fastsim",
+        licence=f"{FACTS} Apache-2.0",
+        speed_km_h=[speed * KM_H_PER_M_S for speed in once + once[1:]],
+        decimals=1,
+    )
+
+
+def fastsim_m_s(name: str) -> list[float]:
+    """Speeds of a cycle that fastsim carries."""
+    with packaged_file("fastsim", f"fastsim/resources/cycles/{name}.csv").open(encoding="utf-8-sig") as file:
+        return [float(row["cycMps"]) for row in csv.DictReader(file)]
 
 
 def artemis(cycle_id: str, title: str, column: str) -> Cycle:
@@ -160,9 +205,13 @@ def main() -> None:
     CYCLES.mkdir(parents=True, exist_ok=True)
     for cycle in (
         wltc_class3b(),
+        wltc_class2(),
         nedc(),
         epa("udds", "UDDS: urban dynamometer driving schedule"),
         epa("hwfet", "HWFET: highway fuel economy test"),
+        epa("us06", "US06: hard driving, mostly on a motorway"),
+        wmtc(),
+        wmtc_part3_twice(),
         artemis("artemis-urban", "Artemis urban cycle", "CADC Urban"),
         artemis("artemis-road", "Artemis rural road cycle", "CADC Road"),
         artemis("artemis-motorway-130", "Artemis motorway cycle, 130 km/h version", "CADC Motorway 130"),

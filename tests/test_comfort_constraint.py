@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from agents.training import configuration, environments
@@ -114,17 +114,56 @@ def test_notes_bring_the_multipliers_back() -> None:
     assert again.notes() == first.notes()
 
 
-def test_a_multiplier_weighs_the_discomfort_of_trips_in_its_climate() -> None:
-    made = training()
+EVEN = np.full(3, 0.25)
+ALLOWED_K = np.array([16.0, 8.0, 2.0])
+
+
+def factors(*changes: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Factors without and with multipliers, and distances of the cabins from comfort over what is allowed."""
+    made = training(*changes)
     scale = environments.RewardScale(made)
     envs = environments.make(made)
     envs.seed(0)
-    observations = np.asarray(envs.reset())
+    envs.reset()
     raw = envs.get_original_obs()  # type: ignore[attr-defined]
-    assert observations.shape == raw.shape
     before = scale.factors(raw)
-    scale.set_multipliers(np.array([0.25, 0.25, 0.25]))
-    after = scale.factors(raw)
+    scale.set_multipliers(EVEN, ALLOWED_K)
+    signals = [envs.env_method("signals", indices=[index])[0] for index in range(len(raw))]
+    distance_k = np.array([abs(each["cabin_temperature_degc"] - 22.0) for each in signals])
+    ambient_degc = [each["ambient_temperature_degc"] for each in signals]
+    envs.close()
+    return before, scale.factors(raw), distance_k / np.interp(ambient_degc, DEGC, ALLOWED_K)
+
+
+def test_a_multiplier_weighs_the_discomfort_of_trips_in_its_climate() -> None:
+    before, after, _ = factors()
     np.testing.assert_array_equal(after[0], before[0])
     np.testing.assert_allclose(after[1] - before[1], 0.25)
-    envs.close()
+
+
+def test_a_convex_multiplier_weighs_in_proportion_up_to_the_allowed_distance_and_twice_at_most() -> None:
+    before, after, ratio = factors("comfort_constraint.convex=true", "environments.number=16")
+    np.testing.assert_array_equal(after[0], before[0])
+    added = (after[1] - before[1]) / 0.25
+    near = ratio <= 1.0
+    assert near.any()
+    assert not near.all()
+    np.testing.assert_allclose(added[near], ratio[near], rtol=1e-4)
+    np.testing.assert_allclose(added[~near], 2.0 - 1.0 / ratio[~near], rtol=1e-4)
+
+
+@given(st.lists(st.floats(0.0, 50.0), min_size=3, max_size=30))
+def test_what_a_convex_weight_makes_of_discomfort_is_convex(ratios: list[float]) -> None:
+    ratio = np.unique(ratios)
+    assume(len(ratio) > 2)
+    assume(np.diff(ratio).min() > 1e-6)
+    cost = ratio * environments._convex(ratio)
+    slopes = np.diff(cost) / np.diff(ratio)
+    assert np.all(np.diff(slopes) > -1e-6)
+    assert np.all(slopes <= 2.0 + 1e-6)
+
+
+def test_a_convex_weight_needs_to_see_the_cabin() -> None:
+    made = training("comfort_constraint.convex=true", 'environment.observations=["ambient_temperature_degc"]')
+    with pytest.raises(configuration.TrainingConfigurationError, match="need cabin_temperature_degc among"):
+        environments.RewardScale(made)

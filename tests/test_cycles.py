@@ -21,12 +21,17 @@ class Figures:
 
 
 # WLTC: GTR 15. NEDC: R83; its 11.007 km rounds the ECE 15 cycle to 1.013 km before taking it four times.
-# UDDS, HWFET: EPA, to 0.01 mile. Artemis: not published but read from the files, so that a change shows.
+# UDDS, HWFET, US06: EPA, to 0.01 mile. Artemis, WMTC: not published but read from the files, so that a change
+# shows.
 FIGURES = {
     "wltc-class3b": Figures(1801, 23.266, 131.3),
+    "wltc-class2": Figures(1801, 22.649, 123.1),
     "nedc": Figures(1181, 11.007, 120.0, tolerance_km=0.01),
     "udds": Figures(1370, 7.45 * KM_PER_MILE, 56.7 * KM_H_PER_MPH, tolerance_km=0.01),
     "hwfet": Figures(766, 10.26 * KM_PER_MILE, 59.9 * KM_H_PER_MPH, tolerance_km=0.01),
+    "us06": Figures(601, 8.01 * KM_PER_MILE, 80.3 * KM_H_PER_MPH, tolerance_km=0.01),
+    "wmtc-class3": Figures(1801, 28.915, 125.3),
+    "wmtc-part3-twice": Figures(1201, 31.474, 125.3),
     "artemis-urban": Figures(994, 4.870, 57.7),
     "artemis-road": Figures(1082, 17.272, 111.5),
     "artemis-motorway-130": Figures(1068, 28.736, 131.8),
@@ -107,6 +112,6 @@ def test_nedc_operations_start_when_the_regulation_says() -> None:
 
 
 def test_us_cycles_are_in_tenths_of_mph() -> None:
-    for cycle in ("udds", "hwfet"):
+    for cycle in ("udds", "hwfet", "us06"):
         tenths = np.array(speed_column(cycle), dtype=np.float64) / KM_H_PER_MPH * 10
         np.testing.assert_allclose(tenths, np.round(tenths), atol=0.005)

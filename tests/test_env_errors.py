@@ -21,9 +21,9 @@ GOOD = np.array([0, 0, 0, 0, 0, 0, 0, 0])
         ({"scenario": "nowhere"}, r"unknown scenario `nowhere`; available: jeffs2019/case1-1"),
         (
             {"distribution": "nothing"},
-            r"unknown distribution of episodes `nothing`; available: test-v0, train-v0",
+            r"unknown distribution of episodes `nothing`; available: test-v0, train-v1",
         ),
-        ({"scenario": "jeffs2019/case1-1", "distribution": "train-v0"}, "only one may be given"),
+        ({"scenario": "jeffs2019/case1-1", "distribution": "train-v1"}, "only one may be given"),
         ({"reward": "fame"}, "unknown reward `fame`; available: balanced"),
         ({"reward": {"energy_per_kwh": -1.0}}, r"`energy_per_kwh` is -1, but must be between 0 and 1000"),
         ({"reward": {"money": 1.0}}, "unknown field `money`"),
@@ -51,7 +51,7 @@ def test_a_wrong_setting_is_named(kwargs: dict[str, Any], message: str) -> None:
 
 
 def test_a_distribution_file_of_ones_own_is_read_and_checked(tmp_path: Path) -> None:
-    text = hp_gym._core.config_text("distribution of episodes", "train-v0")
+    text = hp_gym._core.config_text("distribution of episodes", "train-v1")
     path = tmp_path / "mine.toml"
     path.write_text(text.replace("ambient_low_degc = -20.0", "ambient_low_degc = 39.0"))
     _, info = EVHeatPumpEnv(distribution=path).reset(seed=0)

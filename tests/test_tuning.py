@@ -8,6 +8,8 @@ from typing import Any
 import pytest
 
 import hp_gym
+from agents.training import configuration
+from agents.tuning import objective as goals
 from agents.tuning import rules, search
 from agents.tuning.bands import BANDS, Band
 from agents.tuning.objective import objective
@@ -62,3 +64,10 @@ def _flat(prefix: str, table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
             yield from _flat(f"{prefix}{key}.", value)
         else:
             yield f"{prefix}{key}", value
+
+
+def test_rules_are_held_to_the_comfort_that_policies_are_held_to() -> None:
+    constraint = configuration.load("ppo", []).comfort_constraint
+    assert constraint is not None
+    assert (constraint.margin_k, constraint.margin_share) == (goals.MARGIN_K, goals.MARGIN_SHARE)
+    assert configuration.load("ppo", []).environment.reward == goals.REWARD

@@ -10,12 +10,14 @@ from agents.training.trips import Decide, Driven, FixedTrips
 
 
 class ComfortConstraint:
-    """Learns by dual ascent what discomfort must weigh more at each ambient temperature.
+    """Learns what discomfort must weigh more at each ambient temperature.
 
     The policy minimises energy and weighed discomfort, subject to being no less comfortable than rules. The
     multiplier of that condition rises where the condition is violated, falls where there is comfort to spare,
     and is never negative (Tessler et al. 2019, arXiv:1805.11074, section 4, with one multiplier a climate).
     Alone it is an integral controller; the proportional part is that of Stooke et al. 2020, arXiv:2007.03964.
+    With a convex weight (`convex`) this is a penalty method, no longer dual ascent: what is driven to its
+    bound is the mean discomfort, what costs is its square.
 
     Args:
         training: What is trained.
@@ -54,8 +56,16 @@ class ComfortConstraint:
 
     @property
     def multipliers(self) -> NDArray[np.float64]:
-        """Of each ambient temperature; what is added to the weight of discomfort there."""
+        """Of each ambient temperature; what is added to the weight of discomfort there.
+
+        With a convex weight at the allowed distance from comfort, less below and up to twice as much beyond.
+        """
         return self._multipliers
+
+    @property
+    def allowed_k(self) -> NDArray[np.float64]:
+        """Discomfort that is allowed at each ambient temperature."""
+        return self._allowed_k
 
     def is_due(self, decisions: int) -> bool:
         """Whether so many decisions ask for an update."""

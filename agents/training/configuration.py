@@ -48,7 +48,7 @@ class Environments(_Table):
 class Environment(_Table):
     """Arguments of `EVHeatPumpEnv`; see there."""
 
-    distribution: str = "train-v0"
+    distribution: str = "train-v1"
     control_interval_s: Count = 1
     actions: str | list[str] = "default"
     observations: str | list[str] = "default"
@@ -130,6 +130,10 @@ class ComfortConstraintSettings(_Table):
     """Lasting change of the weight for each Kelvin of violation (at most one) at each look."""
     damping_per_k: NotNegative = 0.0
     """Passing change for each Kelvin of violation (at most one): a policy that follows late overshoots."""
+    convex: bool = False
+    """Whether the addition grows with the cabin's distance from comfort, so that discomfort costs its square
+    up to the allowed one and a straight line beyond. Where energy and comfort trade evenly, as with the PTC
+    in deep cold, the best policy is otherwise all or nothing, and no weight between them is found."""
     largest: Positive = 3.0
     """Largest addition to the weight, where the condition cannot be met."""
 

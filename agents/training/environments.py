@@ -12,6 +12,9 @@ from hp_gym import _core, settings
 from hp_gym.sb3 import SB3VecEnv
 
 AMBIENT_ROW: Final = "ambient_temperature_degc"
+CABIN_ROW: Final = "cabin_temperature_degc"
+
+COMFORTABLE_DEGC: Final = 22.0
 
 
 class RewardScale:
@@ -21,7 +24,7 @@ class RewardScale:
         training: The configuration.
 
     Raises:
-        TrainingConfigurationError: The ambient temperature is wanted and not observed.
+        TrainingConfigurationError: The ambient or the cabin's temperature is wanted and not observed.
     """
 
     def __init__(self, training: Training) -> None:
@@ -31,31 +34,43 @@ class RewardScale:
         constraint = training.comfort_constraint
         self._constrained_degc = np.array([0.0] if constraint is None else constraint.ambient_degc)
         self._multipliers = np.zeros(len(self._constrained_degc))
+        self._allowed_k = np.ones(len(self._constrained_degc))
+        self._is_convex = constraint is not None and constraint.convex
         self._by_ambient = normalisation.typical_cost is not None or constraint is not None
         if self._by_ambient:
-            self._row, self._low_degc, self._high_degc = _ambient_row(training)
+            self._ambient = _Row(training, AMBIENT_ROW)
+        if self._is_convex:
+            self._cabin = _Row(training, CABIN_ROW)
 
     @property
     def is_one(self) -> bool:
         """Whether rewards stay as they are."""
         return not self._by_ambient and self._factor == 1.0
 
-    def set_multipliers(self, multipliers: NDArray[np.float64]) -> None:
-        """Sets what the comfort constraint adds to the weight of discomfort in trips from now on."""
-        self._multipliers = multipliers
+    def set_multipliers(self, multipliers: NDArray[np.float64], allowed_k: NDArray[np.float64]) -> None:
+        """Sets what the comfort constraint adds to the weight of discomfort from now on.
+
+        Args:
+            multipliers: One for each of the constraint's ambient temperatures.
+            allowed_k: Discomfort that is allowed there.
+        """
+        self._multipliers, self._allowed_k = multipliers, allowed_k
 
     def factors(self, observations: NDArray[np.float32]) -> NDArray[np.float64]:
         """Returns two rows of factors, on all and on discomfort besides, for environments that gave these.
 
-        They are the same all trip long.
+        They are of the decision that follows the observations.
         """
         if not self._by_ambient:
             return np.tile([[self._factor], [1.0]], (1, len(observations)))
-        share = 0.5 * (observations[:, self._row] + 1.0)
-        ambient_degc = self._low_degc + share * (self._high_degc - self._low_degc)
+        ambient_degc = self._ambient.values(observations)
         cost = np.interp(ambient_degc, self._costs[:, 0], self._costs[:, 1])
-        comfort = 1.0 + np.interp(ambient_degc, self._constrained_degc, self._multipliers)
-        return np.stack([self._factor / cost, comfort])
+        added = np.interp(ambient_degc, self._constrained_degc, self._multipliers)
+        if self._is_convex:
+            allowed_k = np.interp(ambient_degc, self._constrained_degc, self._allowed_k)
+            distance_k = np.abs(self._cabin.values(observations) - COMFORTABLE_DEGC)
+            added *= _convex(distance_k / np.maximum(allowed_k, 0.1))
+        return np.stack([self._factor / cost, 1.0 + added])
 
 
 def scaled(
@@ -79,7 +94,7 @@ class ScaledReward(VecEnvWrapper):
         self._inner = venv
         self.scale = scale
         self.factors = np.zeros((2, venv.num_envs))
-        """Of the trips under way."""
+        """Of the decisions that come."""
 
     def reset(self) -> Any:
         """Begins trips."""
@@ -91,7 +106,6 @@ class ScaledReward(VecEnvWrapper):
         """Drives all environments on."""
         observations, rewards, done, infos = self.venv.step_wait()
         counted = scaled(rewards, self._inner.discomfort_rewards, self.factors).astype(np.float32)
-        # Of the trip that has begun, where one has ended.
         self.factors = self.scale.factors(np.asarray(observations))
         return observations, counted, done, infos
 
@@ -101,15 +115,33 @@ def _table(rows: list[list[float]] | None) -> NDArray[np.float64]:
     return np.array(rows if rows is not None else [[0.0, 1.0]])
 
 
-def _ambient_row(training: Training) -> tuple[int, float, float]:
-    """Place of the ambient temperature among the observations, with its bounds in degC."""
-    chosen = settings.Settings(observations=training.environment.observations)
-    episode = _core.Episode(chosen.to_json(), None, settings.DEFAULT_DISTRIBUTION)
-    for index, (name, _, low, high, _) in enumerate(episode.observation_rows()):
-        if name == AMBIENT_ROW:
-            return index, low, high
-    message = f"weights by ambient temperature need {AMBIENT_ROW} among the observations"
-    raise TrainingConfigurationError(message)
+def _convex(ratio: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Weight of a distance from comfort for its ratio to the allowed one.
+
+    Distance times weight is quadratic up to the allowed distance and goes on in a straight line, as the loss
+    of Huber 1964 (doi:10.1214/aoms/1177703732) does.
+    """
+    weight: NDArray[np.float64] = np.where(ratio <= 1.0, ratio, 2.0 - 1.0 / np.maximum(ratio, 1.0))
+    return weight
+
+
+class _Row:
+    """A place of the observations, read in its unit."""
+
+    def __init__(self, training: Training, name: str) -> None:
+        chosen = settings.Settings(observations=training.environment.observations)
+        episode = _core.Episode(chosen.to_json(), None, settings.DEFAULT_DISTRIBUTION)
+        for index, (row, _, low, high, _) in enumerate(episode.observation_rows()):
+            if row == name:
+                self._index, self._low, self._span = index, low, high - low
+                return
+        message = f"weights by climate and comfort need {name} among the observations"
+        raise TrainingConfigurationError(message)
+
+    def values(self, observations: NDArray[np.float32]) -> NDArray[np.float64]:
+        """Returns its values."""
+        share: NDArray[np.float64] = 0.5 * (observations[:, self._index].astype(np.float64) + 1.0)
+        return self._low + share * self._span
 
 
 def make(training: Training) -> VecEnv:

@@ -56,10 +56,12 @@ def warm_start(model: OnPolicyAlgorithm, training: OnPolicyTraining, seed: int, 
         return
     assert model.env is not None
     wrapper = environments.normaliser(model.env)
+    scaled = environments.scaled_reward(model.env)
+    scaling = None if scaled is None else scaled.scale
     rounds: list[Demonstrations] = []
     for number in range(settings.rounds):
         driver = model.policy if number else None
-        shown = demonstrate(training, settings, seed + number * 1_000_003, driver, wrapper)
+        shown = demonstrate(training, settings, seed + number * 1_000_003, driver, wrapper, scaling=scaling)
         if wrapper is not None and wrapper.norm_obs and not rounds:
             wrapper.obs_rms.update(shown.observations)
         rounds.append(shown)
@@ -72,6 +74,8 @@ def demonstrate(
     seed: int,
     driver: BasePolicy | None = None,
     wrapper: VecNormalize | None = None,
+    *,
+    scaling: environments.RewardScale | None = None,
 ) -> Demonstrations:
     """Asks the teacher for its actions on training trips that it, or in part another policy, drives.
 
@@ -84,6 +88,7 @@ def demonstrate(
         seed: Seed of trips and chance.
         driver: Policy that drives its share of the environments; none by default.
         wrapper: Normalises what the driver sees.
+        scaling: How rewards count; by default as the configuration says, without a comfort constraint.
 
     Raises:
         ConfigurationError: There is no such teacher.
@@ -96,7 +101,7 @@ def demonstrate(
         overrides={"scenario.controller": settings.teacher},
         **training.environment.model_dump(),
     )
-    scaling = environments.RewardScale(training)
+    scaling = scaling or environments.RewardScale(training)
     chance = np.random.default_rng([seed, number])
     seen, _ = envs.reset(seed=int(chance.integers(2**62)))
     envs.action_space.seed(int(chance.integers(2**31)))

@@ -179,7 +179,7 @@ class Watch(BaseCallback):
         if self._comfort is not None:
             scaled = environments.scaled_reward(self.training_env)
             assert scaled is not None
-            scaled.scale.set_multipliers(self._comfort.multipliers)
+            scaled.scale.set_multipliers(self._comfort.multipliers, self._comfort.allowed_k)
 
     def _decide(self) -> tuple[Decide, bool]:
         """The policy without chance, and whether it needs masks."""

@@ -17,8 +17,8 @@ from hp_gym.vector_env import EVHeatPumpVectorEnv
 REWARD: Final = "reference"
 """What the reference policies are trained for, too (configs/rewards/reference.toml)."""
 
-MARGIN_K: Final = 2.0
-MARGIN_SHARE: Final = 0.3
+MARGIN_K: Final = 3.5
+MARGIN_SHARE: Final = 0.2
 """By how much rules must be more comfortable than the paper's: the lesser of Kelvins and share."""
 
 PENALTY_PER_K: Final = 20.0

@@ -39,7 +39,7 @@ struct Driven {
 impl Driven {
     fn new(count: usize, threads: usize) -> Self {
         let setup = setup();
-        let source = setup.distribution("train-v0").expect("built in");
+        let source = setup.distribution("train-v1").expect("built in");
         let episodes = (0..count).map(|_| Episode::new(Arc::clone(&setup), source.clone())).collect();
         let mut vector = Vector::new(episodes, Autoreset::NextStep, None, threads);
         for index in 0..count {

@@ -7,6 +7,7 @@ pub mod action;
 pub mod episode;
 pub mod garage;
 pub mod observation;
+mod prefetch;
 pub mod random;
 pub mod reference;
 pub mod reward;

@@ -18,10 +18,24 @@ pub struct DistributionParameters {
     pub description: String,
     /// Scenario that gives vehicle, controller, strategy and heat requests.
     pub scenario: String,
-    /// Drive cycles, all equally likely.
-    pub cycles: Vec<String>,
+    /// Drive cycles, all equally likely; one may be there more than once.
+    pub cycles: Vec<SampledCycle>,
     /// Ranges of what is drawn.
     pub ranges: SampledRanges,
+}
+
+/// A drive cycle of a distribution.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table with `name`, and `least_battery_temperature_degc` if needed"
+)]
+pub struct SampledCycle {
+    /// Name or path.
+    pub name: String,
+    /// A colder battery could not give what the cycle asks for: the car was plugged in, and its battery kept at
+    /// least this warm [degC].
+    pub least_battery_temperature_degc: Option<Celsius>,
 }
 
 parameters! {
@@ -53,6 +67,12 @@ parameters! {
         charge_high_pct: f64 = 1.0 .. 100.0,
         /// Largest number of people.
         occupants_high: u32 = 1 .. 9,
+        /// Share of trips for which the car was plugged in and its battery kept at a temperature or above [-].
+        plugged_in_share: f64 = 0.0 .. 1.0,
+        /// Coldest temperature that is kept [degC].
+        plugged_in_low_degc: Celsius = -40.0 .. 50.0,
+        /// Hottest temperature that is kept [degC].
+        plugged_in_high_degc: Celsius = -40.0 .. 50.0,
     }
 }
 
@@ -61,11 +81,18 @@ impl Validate for DistributionParameters {
         if self.cycles.is_empty() {
             return Err(Violation::new("cycles", "empty", "must name at least one drive cycle"));
         }
+        for (index, cycle) in self.cycles.iter().enumerate() {
+            if let Some(least) = cycle.least_battery_temperature_degc {
+                let key = format!("cycles[{index}].least_battery_temperature_degc");
+                check_range(&key, least.0, -40.0, 50.0)?;
+            }
+        }
         let ranges = &self.ranges;
         ranges.validate().map_err(|violation| violation.within("ranges"))?;
         for (key, low, high) in [
             ("ranges.ambient_low_degc", ranges.ambient_low_degc.0, ranges.ambient_high_degc.0),
             ("ranges.garage_low_degc", ranges.garage_low_degc.0, ranges.garage_high_degc.0),
+            ("ranges.plugged_in_low_degc", ranges.plugged_in_low_degc.0, ranges.plugged_in_high_degc.0),
             ("ranges.charge_low_pct", ranges.charge_low_pct, ranges.charge_high_pct),
         ] {
             check_range(key, low, f64::NEG_INFINITY, high)?;
@@ -98,11 +125,11 @@ impl Distribution {
         let template = garage.experiment(&parameters.scenario)?;
         let mut standstills = Vec::with_capacity(parameters.cycles.len());
         for cycle in &parameters.cycles {
-            let speeds_m_s = garage.cycle(cycle)?.speeds_m_s().to_vec();
+            let speeds_m_s = garage.cycle(&cycle.name)?.speeds_m_s().to_vec();
             standstills.push((0..speeds_m_s.len()).filter(|&second| speeds_m_s[second] == 0.0).collect());
         }
         let origin = parameters.scenario.as_str().into();
-        let cycles = parameters.cycles.iter().map(|cycle| cycle.as_str().into()).collect();
+        let cycles = parameters.cycles.iter().map(|cycle| cycle.name.as_str().into()).collect();
         Ok(Self { name: name.to_owned(), parameters, origin, cycles, template, standstills })
     }
 
@@ -137,6 +164,10 @@ impl Distribution {
         let parked_in_sun = !from_garage && !dark;
         initial.cabin_temperature_degc =
             parked_in_sun.then_some(Celsius(soak_degc + ranges.parked_cabin_k_w * sun_w));
+        if let Some(kept_degc) = self.draw_kept_degc(cycle, random).filter(|&kept_degc| kept_degc > soak_degc)
+        {
+            initial.battery_temperature_degc = Some(Celsius(kept_degc));
+        }
         Trip {
             origin: Arc::clone(&self.origin),
             cycle: Arc::clone(&self.cycles[cycle]),
@@ -144,6 +175,17 @@ impl Distribution {
             initial,
             window,
         }
+    }
+
+    /// Temperature at or above which the battery was kept, if it was.
+    fn draw_kept_degc(&self, cycle: usize, random: &mut Random) -> Option<f64> {
+        let ranges = &self.parameters.ranges;
+        let least_degc = self.parameters.cycles[cycle].least_battery_temperature_degc.map(|least| least.0);
+        // Nothing is drawn where nothing depends on it.
+        let plugged_in = ranges.plugged_in_share > 0.0 && random.chance(ranges.plugged_in_share);
+        let chosen_degc =
+            plugged_in.then(|| random.between(ranges.plugged_in_low_degc.0, ranges.plugged_in_high_degc.0));
+        least_degc.into_iter().chain(chosen_degc).reduce(f64::max)
     }
 
     /// Part of a cycle between two standstills; none if the cycle has no such part.
@@ -174,7 +216,7 @@ mod tests {
 
     #[test]
     fn every_drawn_scenario_passes_the_checks_of_a_scenario_file() {
-        for name in ["train-v0", "test-v0"] {
+        for name in ["train-v1", "test-v0"] {
             let garage = Garage::default();
             for trip in drawn(name) {
                 let origin = garage.experiment(&trip.origin).expect("built in");
@@ -187,7 +229,7 @@ mod tests {
 
     #[test]
     fn training_trips_differ_in_length_and_cover_cold_and_heat() {
-        let trips = drawn("train-v0");
+        let trips = drawn("train-v1");
         let ambient = |trip: &Trip| trip.climate.ambient_temperature_degc.0;
         assert!(
             trips.iter().any(|trip| ambient(trip) < -19.0) && trips.iter().any(|trip| ambient(trip) > 39.0)
@@ -204,6 +246,26 @@ mod tests {
     }
 
     #[test]
+    fn batteries_of_fast_cycles_are_warm_enough_and_some_others_were_kept_warm() {
+        let trips = drawn("train-v1");
+        let battery_degc = |trip: &Trip| {
+            trip.initial.battery_temperature_degc.unwrap_or(trip.initial.soak_temperature_degc).0
+        };
+        let on = |name: &'static str| trips.iter().filter(move |trip| &*trip.cycle == name);
+        assert!(on("wmtc-part3-twice").count() > 200 && on("artemis-urban").count() > 200);
+        assert!(on("wmtc-part3-twice").all(|trip| battery_degc(trip) >= -5.0));
+        assert!(on("artemis-urban").any(|trip| battery_degc(trip) < -19.0));
+        let cold = on("artemis-urban").filter(|trip| trip.initial.soak_temperature_degc.0 < -10.0).count();
+        let kept = on("artemis-urban")
+            .filter(|trip| trip.initial.soak_temperature_degc.0 < -10.0 && battery_degc(trip) >= -10.0)
+            .count();
+        let share = kept as f64 / cold as f64;
+        assert!((0.15..0.45).contains(&share), "{kept} of {cold}");
+        // Keeping it warm never cools it.
+        assert!(trips.iter().all(|trip| battery_degc(trip) >= trip.initial.soak_temperature_degc.0));
+    }
+
+    #[test]
     fn test_trips_use_no_training_cycle() {
         let cycles = |name: &str| {
             let mut cycles: Vec<Arc<str>> = drawn(name).into_iter().map(|trip| trip.cycle).collect();
@@ -211,7 +273,7 @@ mod tests {
             cycles.dedup();
             cycles
         };
-        let training = cycles("train-v0");
+        let training = cycles("train-v1");
         assert!(cycles("test-v0").iter().all(|cycle| !training.contains(cycle)));
     }
 }

@@ -1,10 +1,17 @@
 //! Work shared between the calling thread and helpers.
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use std::sync::{Mutex, PoisonError};
+use std::hint::spin_loop;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Entries that a thread takes at a time: some microseconds of work, so that no thread waits long for another.
 const BATCH: usize = 16;
+
+/// So long helpers look for more work before they sleep: waking one takes tens of microseconds, as long as a tight
+/// loop of steps spends between two of them.
+const AWAKE: Duration = Duration::from_micros(100);
 
 /// Consecutive entries that can be divided.
 pub trait Stretch: Send + Sized {
@@ -27,6 +34,23 @@ pub struct Threads {
 struct Helpers {
     process: u32,
     pool: ThreadPool,
+    /// How often there was work.
+    rounds: Arc<AtomicU64>,
+}
+
+impl Helpers {
+    /// Keeps helpers awake for a while, or until they were needed again.
+    fn stay_awake(&self) {
+        let round = self.rounds.fetch_add(1, Ordering::Relaxed) + 1;
+        let rounds = Arc::clone(&self.rounds);
+        self.pool.spawn_broadcast(move |_| {
+            let began = Instant::now();
+            while rounds.load(Ordering::Relaxed) == round && began.elapsed() < AWAKE {
+                rayon::yield_now();
+                spin_loop();
+            }
+        });
+    }
 }
 
 impl Threads {
@@ -48,7 +72,7 @@ impl Threads {
     /// core's cache. Then it takes what others have left: one that the machine holds up holds up nobody else.
     pub fn work<S: Stretch>(&mut self, mut all: S, work: impl Fn(S) + Sync) {
         let count = self.count.min(all.count().div_ceil(BATCH));
-        let Some(pool) = self.pool(count) else {
+        let Some(helpers) = self.helpers(count) else {
             work(all);
             return;
         };
@@ -69,16 +93,17 @@ impl Threads {
             }
         };
         let toil = &toil;
-        pool.in_place_scope(|scope| {
+        helpers.pool.in_place_scope(|scope| {
             for thread in 1..count {
                 scope.spawn(move |_| toil(thread));
             }
             toil(0);
         });
+        helpers.stay_awake();
     }
 
     /// Helpers for `count` threads; none where the calling one is enough or no more are to be had.
-    fn pool(&mut self, count: usize) -> Option<&ThreadPool> {
+    fn helpers(&mut self, count: usize) -> Option<&Helpers> {
         if count < 2 {
             return None;
         }
@@ -89,8 +114,8 @@ impl Threads {
         }
         if self.helpers.is_none() {
             let pool = ThreadPoolBuilder::new().num_threads(self.count - 1).build().ok();
-            self.helpers = pool.map(|pool| Helpers { process, pool });
+            self.helpers = pool.map(|pool| Helpers { process, pool, rounds: Arc::default() });
         }
-        self.helpers.as_ref().map(|helpers| &helpers.pool)
+        self.helpers.as_ref()
     }
 }

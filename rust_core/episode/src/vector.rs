@@ -4,6 +4,7 @@
 
 use crate::action;
 use crate::episode::Episode;
+use crate::prefetch::prefetch;
 use crate::reward::{PART_NAMES, Terms};
 use crate::setup::Source;
 use crate::threads::{Stretch, Threads};
@@ -348,9 +349,12 @@ impl Batch<'_> {
     ) {
         let Some(first) = self.episodes.first() else { return };
         let width = first.setup().observations.rows().len();
-        for (place, (episode, observation)) in
-            self.episodes.iter_mut().zip(self.observations.chunks_mut(width)).enumerate()
-        {
+        let mut rest = &mut *self.episodes;
+        for (place, observation) in self.observations.chunks_mut(width).enumerate() {
+            let Some(episode) = rest.split_off_first_mut() else { return };
+            if let Some(next) = rest.first() {
+                prefetch(next);
+            }
             let mut job = Job {
                 index: self.first + place,
                 episode,
