@@ -23,7 +23,8 @@ KM_H_PER_MPH = 1.609344
 KM_H_PER_M_S = 3.6
 
 GTR_2 = "UN Global Technical Regulation No. 2, Annex 5, parts 1, 2 and 3 for class 3"
-GTR_15 = "UN Global Technical Regulation No. 15, Annex 1, class 3b"
+GTR_15 = "UN Global Technical Regulation No. 15, Annex 1"
+WLTC_PHASES = "low, medium, high and extra-high phases of 589, 433, 455 and 323 s"
 R83 = "UN Regulation No. 83, type I test: four ECE 15 cycles and one EUDC"
 EPA = "US EPA dynamometer schedule, 0.1 mph steps"
 ARTEMIS = "Andre 2004, The ARTEMIS European driving cycles, doi:10.1016/j.scitotenv.2004.04.070"
@@ -79,27 +80,13 @@ def packaged_file(package: str, path: str) -> Path:
     return Path(str(distribution(package).locate_file(path)))
 
 
-def wltc_class3b() -> Cycle:
-    """The WLTC for cars above 34 W/kg that reach 120 km/h."""
-    data = runpy.run_path(str(packaged_file("wltp", "wltp/cycles/class3.py")))["class_data_b"]()
+def wltc(vehicle_class: str, file: str, function: str) -> Cycle:
+    """A WLTC: class 3b for cars above 34 W/kg that reach 120 km/h, class 2 for those of 22 to 34 W/kg."""
+    data = runpy.run_path(str(packaged_file("wltp", f"wltp/cycles/{file}.py")))[function]()
     return Cycle(
-        id="wltc-class3b",
-        title="WLTC class 3b: low, medium, high and extra-high phases of 589, 433, 455 and 323 s",
-        published_in=GTR_15,
-        package="wltp",
-        licence=f"{FACTS} EUPL 1.1+",
-        speed_km_h=data["cycle"],
-        decimals=1,
-    )
-
-
-def wltc_class2() -> Cycle:
-    """The WLTC for cars of 22 to 34 W/kg."""
-    data = runpy.run_path(str(packaged_file("wltp", "wltp/cycles/class2.py")))["class_data"]()
-    return Cycle(
-        id="wltc-class2",
-        title="WLTC class 2: low, medium, high and extra-high phases of 589, 433, 455 and 323 s",
-        published_in=GTR_15.replace("3b", "2"),
+        id=f"wltc-class{vehicle_class}",
+        title=f"WLTC class {vehicle_class}: {WLTC_PHASES}",
+        published_in=f"{GTR_15}, class {vehicle_class}",
         package="wltp",
         licence=f"{FACTS} EUPL 1.1+",
         speed_km_h=data["cycle"],
@@ -139,29 +126,15 @@ def epa(cycle_id: str, title: str) -> Cycle:
     )
 
 
-def wmtc() -> Cycle:
-    """The cycle of large motorcycles, up to 125 km/h: town, country and motorway, ten minutes each."""
+def wmtc(cycle_id: str, title: str, speed_m_s: Sequence[float]) -> Cycle:
+    """A cycle of large motorcycles, up to 125 km/h."""
     return Cycle(
-        id="wmtc-class3",
-        title="WMTC class 3: parts 1, 2 and 3 of 600 s each",
+        id=cycle_id,
+        title=title,
         published_in=GTR_2,
         package="fastsim",
         licence=f"{FACTS} Apache-2.0",
-        speed_km_h=[speed * KM_H_PER_M_S for speed in fastsim_m_s("wmtc_all")],
-        decimals=1,
-    )
-
-
-def wmtc_part3_twice() -> Cycle:
-    """Motorway alone, as long as a drive to work; such cycles for cars are held out."""
-    once = fastsim_m_s("wmtc_part3")
-    return Cycle(
-        id="wmtc-part3-twice",
-        title="WMTC part 3-2, motorway, driven twice",
-        published_in=GTR_2,
-        package="fastsim",
-        licence=f"{FACTS} Apache-2.0",
-        speed_km_h=[speed * KM_H_PER_M_S for speed in once + once[1:]],
+        speed_km_h=[speed * KM_H_PER_M_S for speed in speed_m_s],
         decimals=1,
     )
 
@@ -203,15 +176,17 @@ def write(cycle: Cycle) -> Path:
 def main() -> None:
     """Writes all cycles."""
     CYCLES.mkdir(parents=True, exist_ok=True)
+    motorway = fastsim_m_s("wmtc_part3")
     for cycle in (
-        wltc_class3b(),
-        wltc_class2(),
+        wltc("3b", "class3", "class_data_b"),
+        wltc("2", "class2", "class_data"),
         nedc(),
         epa("udds", "UDDS: urban dynamometer driving schedule"),
         epa("hwfet", "HWFET: highway fuel economy test"),
         epa("us06", "US06: hard driving, mostly on a motorway"),
-        wmtc(),
-        wmtc_part3_twice(),
+        wmtc("wmtc-class3", "WMTC class 3: parts 1, 2 and 3 of 600 s each", fastsim_m_s("wmtc_all")),
+        # Motorway alone, as long as a drive to work; such cycles for cars are held out.
+        wmtc("wmtc-part3-twice", "WMTC part 3-2, motorway, driven twice", motorway + motorway[1:]),
         artemis("artemis-urban", "Artemis urban cycle", "CADC Urban"),
         artemis("artemis-road", "Artemis rural road cycle", "CADC Road"),
         artemis("artemis-motorway-130", "Artemis motorway cycle, 130 km/h version", "CADC Motorway 130"),

@@ -50,6 +50,7 @@ SAC = [
     "hyperparameters={buffer_size = 1000, learning_starts = 64, batch_size = 32, gamma = 0.9}",
 ]
 CONSTRAINED = "comfort_constraint={interval_decisions = 300, ambient_degc = [-10, 20], trips = 4}"
+CONVEX = CONSTRAINED.replace("trips = 4", "trips = 4, convex = true, start = 0.5")
 RECURRENT = ["algorithm=recurrent-ppo", "hyperparameters.lstm_hidden_size=8"]
 
 
@@ -141,6 +142,7 @@ class _Killed(BaseException):
         pytest.param([NORMALISED], id="normalised"),
         pytest.param(["normalisation.typical_cost=[[-20, 60], [20, 3], [40, 20]]"], id="typical cost"),
         pytest.param([CONSTRAINED, NORMALISED], id="constrained"),
+        pytest.param([CONVEX], id="constrained and convex"),
         pytest.param([*SAC, NORMALISED], id="sac"),
         pytest.param(RECURRENT, id="recurrent-ppo"),
     ],

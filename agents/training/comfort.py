@@ -4,8 +4,10 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
+from stable_baselines3.common.vec_env import VecEnv
 
 from agents.training.configuration import ComfortConstraintSettings, Training
+from agents.training.environments import scaled_reward
 from agents.training.trips import Decide, Driven, FixedTrips
 
 
@@ -62,10 +64,11 @@ class ComfortConstraint:
         """
         return self._multipliers
 
-    @property
-    def allowed_k(self) -> NDArray[np.float64]:
-        """Discomfort that is allowed at each ambient temperature."""
-        return self._allowed_k
+    def weigh(self, envs: VecEnv) -> None:
+        """Lets rewards count with the multipliers from now on; `environments.make` made the environments."""
+        scaled = scaled_reward(envs)
+        assert scaled is not None
+        scaled.scale.set_multipliers(self._multipliers, self._allowed_k)
 
     def is_due(self, decisions: int) -> bool:
         """Whether so many decisions ask for an update."""

@@ -7,7 +7,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import torch
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from stable_baselines3.common.base_class import BaseAlgorithm
@@ -122,8 +121,10 @@ def _learn(run: Run, model: BaseAlgorithm, notes: dict[str, Any]) -> Outcome:
         task = progress.add_task(
             "train", total=training.total_decisions, told="", completed=model.num_timesteps
         )
+        if training.comfort_constraint is not None:
+            assert model.env is not None
+            ComfortConstraint(training, training.comfort_constraint, notes["comfort"]).weigh(model.env)
         if model.num_timesteps == 0:
-            _weigh_comfort(model, notes)
             _imitate(model, run, progress)
         watch = Watch(run, progress, task, notes)
         remaining = training.total_decisions - model.num_timesteps
@@ -154,17 +155,6 @@ def _learn(run: Run, model: BaseAlgorithm, notes: dict[str, Any]) -> Outcome:
         best=best,
         rules=watch.rules,
     )
-
-
-def _weigh_comfort(model: BaseAlgorithm, notes: dict[str, Any]) -> None:
-    """Lets rewards count with the comfort constraint's first multipliers already in the warm start."""
-    if "comfort" in notes:
-        assert model.env is not None
-        scaled = environments.scaled_reward(model.env)
-        assert scaled is not None
-        scaled.scale.set_multipliers(
-            np.array(notes["comfort"]["multipliers"]), np.array(notes["comfort"]["allowed_k"])
-        )
 
 
 def _imitate(model: BaseAlgorithm, run: Run, progress: Progress) -> None:

@@ -92,7 +92,6 @@ class Watch(BaseCallback):
 
     def _on_training_start(self) -> None:
         self._decisions_at_start = self.model.num_timesteps
-        self._weigh_comfort()
         self._began_s = perf_counter()
         self._write_status("running")
         self._show()
@@ -167,19 +166,13 @@ class Watch(BaseCallback):
         began_s = perf_counter()
         decide, masked = self._decide()
         excess_k = comfort.update(self.model.num_timesteps, decide, masked=masked)
-        self._weigh_comfort()
+        comfort.weigh(self.training_env)
         assert self._training.comfort_constraint is not None
         degc = self._training.comfort_constraint.ambient_degc
         for ambient_degc, excess, multiplier in zip(degc, excess_k, comfort.multipliers, strict=True):
             self.logger.record(f"comfort/excess_k_at_{ambient_degc:g}_degc", float(excess))
             self.logger.record(f"comfort/multiplier_at_{ambient_degc:g}_degc", float(multiplier))
         self._validation_s += perf_counter() - began_s
-
-    def _weigh_comfort(self) -> None:
-        if self._comfort is not None:
-            scaled = environments.scaled_reward(self.training_env)
-            assert scaled is not None
-            scaled.scale.set_multipliers(self._comfort.multipliers, self._comfort.allowed_k)
 
     def _decide(self) -> tuple[Decide, bool]:
         """The policy without chance, and whether it needs masks."""
