@@ -150,7 +150,6 @@ impl RefrigerationState {
             evaporating_k: last.evaporating_k + evaporating_k,
             condensing_k: last.condensing_k + condensing_k,
             speed_rev_s: last.speed_rev_s + speed_rev_s,
-            ..last
         })
     }
 
@@ -180,7 +179,6 @@ impl LoopResult {
             evaporating_k: self.evaporating_temperature_k,
             condensing_k: self.condensing_temperature_k,
             speed_rev_s: self.speed_rev_s,
-            limit: self.limited_by,
         })
     }
 

@@ -1,7 +1,8 @@
 //! Finds the highest compressor speed that respects every limit, with both exchangers in balance.
 //!
-//! Newton on evaporating temperature, condensing temperature and speed, the third equation being the active
-//! limit. Every other limit is then checked and, where violated, becomes the active one. What Newton does not
+//! Newton on evaporating temperature, condensing temperature and speed. The third equation is the least of the margins
+//! that all limits leave, so the limit that holds the compressor back is found together with the solution. The
+//! discharge temperature comes after that: its margin does not fall with speed everywhere. What Newton does not
 //! solve is bracketed over speed, see [`Solver::bracketed`].
 
 use std::cell::Cell;
@@ -78,8 +79,6 @@ pub struct WarmStart {
     pub condensing_k: f64,
     /// Speed [rev/s].
     pub speed_rev_s: f64,
-    /// The limit that was active.
-    pub limit: Limit,
 }
 
 /// One problem.
@@ -111,22 +110,12 @@ pub(super) type Solution = Result<Running, Limit>;
 /// What closes the equations besides the two balances.
 #[derive(Clone, Copy)]
 enum Closure {
-    /// A limit is met exactly.
-    AtLimit(Limit),
+    /// The first of all caps is met or, where one of them is exceeded at minimum speed, that speed.
+    Caps,
+    /// The discharge limit is met.
+    Discharge,
     /// The speed is given [rev/s].
     AtSpeed(f64),
-}
-
-#[allow(
-    clippy::large_enum_variant,
-    reason = "a solution stays on the stack; a box would allocate every second"
-)]
-enum Newton {
-    Solved(CyclePoint<f64>),
-    /// The active limit lies beyond the highest or below the lowest speed.
-    Above,
-    Below,
-    Failed,
 }
 
 impl Solver<'_> {
@@ -164,7 +153,13 @@ impl Solver<'_> {
     #[inline]
     fn errors<T: Real>(&self, closure: Closure, point: &CyclePoint<T>) -> [T; 3] {
         let third = match closure {
-            Closure::AtLimit(limit) => self.margin(limit, point),
+            Closure::Caps => {
+                let [first, others @ ..] = CAPS.map(|limit| self.margin(limit, point));
+                let least = others.into_iter().fold(first, Real::min);
+                // Less than no margin at minimum speed stays there.
+                least.max(self.margin(Limit::MinimumSpeed, point))
+            }
+            Closure::Discharge => self.margin(Limit::Discharge, point),
             Closure::AtSpeed(speed) => (-point.speed_rev_s + speed) / (SCALE_SHARE * speed),
         };
         [point.cold_residual_k, point.hot_residual_k, third]
@@ -201,64 +196,29 @@ impl Solver<'_> {
             return Err(Limit::Speed);
         }
         let start = self.start(warm);
-        let first = match warm.map(|warm| warm.limit) {
-            // The discharge limit can have a second root at low speed: it is only ever reached from above.
-            None | Some(Limit::Discharge | Limit::CoolantFlow | Limit::MinimumSpeed) => Limit::Power,
-            Some(limit) => limit,
-        };
-        let first = if self.hold && self.power_limit_w <= 0.0 { Limit::MinimumSpeed } else { first };
-        match self.active_set(first, start) {
+        match self.direct(start) {
             Some(solution) => solution,
             None => self.bracketed(start),
         }
     }
 
-    /// Newton with one limit after the other; `None` where bracketing has to decide.
-    fn active_set(&self, first: Limit, start: [f64; 3]) -> Option<Solution> {
-        let (mut active, mut unknowns) = (first, start);
-        for _ in 0..8 {
-            let point = match self.newton(Closure::AtLimit(active), unknowns) {
-                Newton::Solved(solved) => solved,
-                Newton::Above if active != Limit::Speed => {
-                    active = Limit::Speed;
-                    continue;
-                }
-                Newton::Below if !matches!(active, Limit::MinimumSpeed | Limit::Discharge) => {
-                    active = Limit::MinimumSpeed;
-                    continue;
-                }
-                _ => return None,
-            };
-            unknowns = point.unknowns();
-            if active == Limit::MinimumSpeed {
-                match self.at_minimum_speed(&point) {
-                    Some(verdict) => return Some(verdict),
-                    None if self.hold => active = Limit::Power,
-                    None => return None,
-                }
-                continue;
-            }
-            if point.speed_rev_s < self.minimum_speed() * (1.0 - LIMIT_TOLERANCE) {
-                match active {
-                    Limit::Power if !self.hold => return Some(Err(Limit::Power)),
-                    Limit::Discharge => return None,
-                    _ => active = Limit::MinimumSpeed,
-                }
-                continue;
-            }
-            let (limit, margin) = self.tightest(&CAPS, &point);
-            let running = self.running(point, active);
-            if margin < -LIMIT_TOLERANCE {
-                active = limit;
-            } else if active == Limit::Discharge {
-                return self.relieved_by_less_speed(unknowns).then_some(Ok(running));
-            } else if running.discharge_k > self.cycle.highest_discharge_k + LIMIT_TOLERANCE {
-                active = Limit::Discharge;
-            } else {
-                return Some(Ok(running));
-            }
+    /// By Newton; `None` where bracketing has to decide.
+    fn direct(&self, start: [f64; 3]) -> Option<Solution> {
+        let point = self.newton(Closure::Caps, start)?;
+        if point.speed_rev_s <= self.minimum_speed() * (1.0 + LIMIT_TOLERANCE)
+            && let Some(verdict) = self.at_minimum_speed(&point)
+        {
+            return Some(verdict);
         }
-        None
+        let running = self.running(point, self.tightest(&CAPS, &point).0);
+        if running.discharge_k <= self.cycle.highest_discharge_k + LIMIT_TOLERANCE {
+            return Some(Ok(running));
+        }
+        let point = self.newton(Closure::Discharge, point.unknowns())?;
+        let allowed = point.speed_rev_s >= self.minimum_speed() * (1.0 - LIMIT_TOLERANCE)
+            && self.tightest(&CAPS, &point).1 >= -LIMIT_TOLERANCE
+            && self.relieved_by_less_speed(point.unknowns());
+        allowed.then(|| Ok(self.running(point, Limit::Discharge)))
     }
 
     /// What minimum speed means for the machine; `None` where more speed is possible or discharge decides.
@@ -281,7 +241,7 @@ impl Solver<'_> {
     /// Leakage makes the gas hot at low speed too, so the discharge limit can be met at two speeds; the higher
     /// is wanted, where the margin falls with speed.
     fn relieved_by_less_speed(&self, unknowns: [f64; 3]) -> bool {
-        let (_, rows) = self.linearised(Closure::AtLimit(Limit::Discharge), unknowns);
+        let (_, rows) = self.linearised(Closure::Discharge, unknowns);
         Inverse::of(rows).is_some_and(|inverse| inverse.step([0.0, 0.0, -1.0])[2] < 0.0)
     }
 
@@ -309,20 +269,19 @@ impl Solver<'_> {
         ]
     }
 
-    /// Both balances together with a third equation.
+    /// Both balances together with a third equation; `None` without a solution.
     ///
     /// Close to the solution the derivatives hardly change: steps with those of an earlier point (chord steps) need
     /// the equations only, a third of the work.
-    fn newton(&self, closure: Closure, start: [f64; 3]) -> Newton {
-        let (low, high) = (0.5 * self.minimum_speed(), 1.5 * self.speed_limit_rev_s);
+    fn newton(&self, closure: Closure, start: [f64; 3]) -> Option<CyclePoint<f64>> {
         let mut unknowns = self.confine(start);
         for _ in 0..MAX_NEWTON_ITERATIONS {
             self.iterations.set(self.iterations.get() + 1);
             let (errors, rows) = self.linearised(closure, unknowns);
-            let Some(inverse) = Inverse::of(rows) else { return Newton::Failed };
+            let inverse = Inverse::of(rows)?;
             let step = inverse.step(errors);
             if !step.iter().all(|change| change.is_finite()) {
-                return Newton::Failed;
+                return None;
             }
             let speed = unknowns[2];
             let fastest = if step[2] > 0.0 { MAX_SPEED_FACTOR - 1.0 } else { 1.0 - 1.0 / MAX_SPEED_FACTOR };
@@ -332,22 +291,14 @@ impl Solver<'_> {
                 step[2] / (fastest * speed),
             ]);
             let scale = if longest > 1.0 { longest.recip() } else { 1.0 };
-            let next = self.confine(std::array::from_fn(|k| unknowns[k] + scale * step[k]));
-            // Pushed against the end of the speed range twice: the root lies outside.
-            if speed == high && next[2] == high {
-                return Newton::Above;
-            }
-            if speed == low && next[2] == low {
-                return Newton::Below;
-            }
-            unknowns = next;
+            unknowns = self.confine(std::array::from_fn(|k| unknowns[k] + scale * step[k]));
             let mut error = largest(errors);
             while error < CHORD_ERROR {
                 let point = self.cycle.point(&self.sides, unknowns);
                 let errors = self.errors(closure, &point);
                 let left = largest(errors);
                 if left < RESIDUAL_TOLERANCE {
-                    return Newton::Solved(point);
+                    return Some(point);
                 }
                 if left > CHORD_SHARE * error || left.is_nan() {
                     break;
@@ -357,7 +308,7 @@ impl Solver<'_> {
                 error = left;
             }
         }
-        Newton::Failed
+        None
     }
 
     /// Errors of all equations and their derivatives.
@@ -404,7 +355,7 @@ impl Solver<'_> {
     /// temperature; both brackets exist because properties are held beyond the table.
     fn at_speed(&self, speed_rev_s: f64, start: [f64; 3]) -> CyclePoint<f64> {
         let start = [start[0], start[1], speed_rev_s];
-        if let Newton::Solved(point) = self.newton(Closure::AtSpeed(speed_rev_s), start) {
+        if let Some(point) = self.newton(Closure::AtSpeed(speed_rev_s), start) {
             return point;
         }
         let at = |evaporating: f64, condensing: f64| {
