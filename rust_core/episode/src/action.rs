@@ -171,10 +171,9 @@ impl ActionTable {
         option: usize,
     ) -> bool {
         let Some(branch) = Branch::of(member, member.options()[option]) else { return true };
-        let connected = state.connected[branch as usize];
         let at = |recirculation: f64| {
             let temperatures = plant.branch_temperatures(state, recirculation, disturbance.ambient_k);
-            branches::allowed(&plant.vehicle, branch, &temperatures, connected)
+            branches::allowed(&plant.vehicle, &temperatures, &state.connected)[branch as usize]
         };
         if member != Member::Cabin {
             return at(0.0);

@@ -8,7 +8,7 @@ mod workload;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use hp_plant::circuits::assembly::{LinkConditions, NODES};
-use hp_plant::circuits::branches::{BRANCH_COUNT, Branch};
+use hp_plant::circuits::branches::{BRANCH_PLACES, Branch};
 use hp_plant::circuits::refrigeration_loop::{LoopDemand, SupplyLimit, WarmStart};
 use hp_plant::numerics::thermal_network::NodeValues;
 use hp_plant::plant::StepRecord;
@@ -77,7 +77,7 @@ fn refrigerant(criterion: &mut Criterion) {
 fn network(criterion: &mut Criterion) {
     let (experiment, run, _) = moment("jeffs2019/case1-4", 600);
     let plant = &experiment.plant;
-    let mut branches_w_k = [0.0; BRANCH_COUNT];
+    let mut branches_w_k = [0.0; BRANCH_PLACES];
     for branch in [Branch::CabinHtc, Branch::MotorChiller, Branch::BatteryChiller, Branch::AmbientChiller] {
         branches_w_k[branch as usize] = 150.0;
     }

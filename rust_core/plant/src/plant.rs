@@ -1,7 +1,7 @@
 //! The vehicle: one entry, [`Plant::step`], pure and deterministic.
 
 use crate::circuits::assembly::{Assembly, LinkConditions, NODES, RECOVERY_APPROACH_K};
-use crate::circuits::branches::{BRANCH_COUNT, Branch};
+use crate::circuits::branches::{BRANCH_COUNT, Branch, BranchTable};
 use crate::circuits::refrigeration_cycle::RefrigerationCycle;
 use crate::circuits::refrigeration_loop::{
     CompressorAllowance, Limit, LoopBoundary, LoopResult, RefrigerationState, SupplyLimit,
@@ -12,7 +12,8 @@ use crate::components::powertrain::Powertrain;
 use crate::config::library::{self, Kind, Override};
 use crate::config::scenario::InitialParameters;
 use crate::config::vehicle::VehicleParameters;
-use crate::control::pid::{IncrementalPid, ResetPid};
+use crate::control::pid::ResetPid;
+use crate::control::thermal_switch::ThermalSwitches;
 use crate::control::vehicle_controls::{ControlGains, Period};
 use crate::error::PlantResult;
 use crate::flows::{Flow, Flows};
@@ -83,6 +84,7 @@ pub struct Plant {
     /// Refrigerant properties.
     pub refrigerant: RefrigerantTable,
     pub(crate) air: AirTable,
+    pub(crate) branches: BranchTable,
     pub(crate) gains: ControlGains,
     substeps: u32,
 }
@@ -114,6 +116,7 @@ impl Plant {
                 .map_err(|violation| violation.within("refrigeration").in_file("vehicle"))?,
             refrigerant: table,
             air: AirTable::default(),
+            branches: BranchTable::of(&vehicle),
             gains: ControlGains::of(&vehicle),
             vehicle,
             substeps: 1,
@@ -160,7 +163,7 @@ impl Plant {
             temperatures_k,
             battery: self.battery.rested(initial.state_of_charge_pct / 100.0),
             connected: [false; BRANCH_COUNT],
-            switches: [IncrementalPid::default(); BRANCH_COUNT],
+            switches: ThermalSwitches::default(),
             htc_pump: self.vehicle.htc.circuit.pump.idle(),
             chiller_pump: self.vehicle.chiller.circuit.pump.idle(),
             ptc_pid: ResetPid::default(),

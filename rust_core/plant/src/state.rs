@@ -5,7 +5,8 @@ use crate::circuits::refrigeration_loop::RefrigerationState;
 use crate::command::{Connection, Member};
 use crate::components::battery::BatteryState;
 use crate::components::pump::PumpState;
-use crate::control::pid::{IncrementalPid, ResetPid};
+use crate::control::pid::ResetPid;
+use crate::control::thermal_switch::ThermalSwitches;
 use crate::numerics::thermal_network::NodeValues;
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +22,7 @@ pub struct State {
     /// Which branches are connected.
     pub connected: [bool; BRANCH_COUNT],
     /// Thermal switches.
-    pub switches: [IncrementalPid; BRANCH_COUNT],
+    pub switches: ThermalSwitches,
     /// HTC pump.
     pub htc_pump: PumpState,
     /// Chiller pump.

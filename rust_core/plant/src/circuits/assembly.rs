@@ -1,6 +1,6 @@
 //! The vehicle's thermal network: which nodes there are and what connects them.
 
-use super::branches::{BRANCH_COUNT, Branch};
+use super::branches::{Branch, BranchValues};
 use crate::components::cabin::Ventilation;
 use crate::config::vehicle::VehicleParameters;
 use crate::flows::{Flow, Flows};
@@ -43,7 +43,7 @@ pub struct LinkConditions {
     /// Coolant capacity rate of the chiller loop [W/K].
     pub chiller_rate_w_k: f64,
     /// Conductance of each branch, its switch applied [W/K].
-    pub branches_w_k: [f64; BRANCH_COUNT],
+    pub branches_w_k: BranchValues,
     /// Air flows.
     pub ventilation: Ventilation,
     /// Conductance of the exhaust recovery; 0 when it is off [W/K].

@@ -2,9 +2,11 @@
 
 use crate::command::{Connection, Demand, Member};
 use crate::components::cabin::Ventilation;
-use crate::components::heat_exchanger::inlet_conductance_w_k;
+use crate::components::heat_exchanger::{counterflow_conductance_w_k, inlet_conductance_w_k};
 use crate::config::coolant::{BranchShares, ClosedBranches, LoopParameters};
 use crate::config::vehicle::VehicleParameters;
+use crate::numerics::elementary::fused;
+use std::array::from_fn;
 
 /// A pair of member and loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,6 +36,13 @@ pub enum Branch {
 /// Number of branches.
 pub const BRANCH_COUNT: usize = 10;
 
+/// Places of [`BranchValues`]: branches are worked out side by side, in whole vector registers and without asking each
+/// whether it is connected, which nobody could predict.
+pub const BRANCH_PLACES: usize = 12;
+
+/// One value for each branch; what stands behind them means nothing.
+pub type BranchValues = [f64; BRANCH_PLACES];
+
 impl Branch {
     /// All branches.
     pub const ALL: [Self; BRANCH_COUNT] = [
@@ -49,26 +58,33 @@ impl Branch {
         Self::ThermalBatteryChiller,
     ];
 
+    /// Member that each branch connects.
+    const MEMBERS: [Member; BRANCH_COUNT] = [
+        Member::Cabin,
+        Member::Battery,
+        Member::Ambient,
+        Member::Motor,
+        Member::Transmission,
+        Member::Battery,
+        Member::Ambient,
+        Member::Cabin,
+        Member::ThermalBattery,
+        Member::ThermalBattery,
+    ];
+
+    /// Whether each branch belongs to the HTC; the others belong to the chiller loop.
+    const HOT: [bool; BRANCH_COUNT] = [true, true, true, false, false, false, false, false, true, false];
+
     /// Member that it connects.
     #[must_use]
     pub fn member(self) -> Member {
-        match self {
-            Self::CabinHtc | Self::CabinChiller => Member::Cabin,
-            Self::BatteryHtc | Self::BatteryChiller => Member::Battery,
-            Self::AmbientHtc | Self::AmbientChiller => Member::Ambient,
-            Self::MotorChiller => Member::Motor,
-            Self::TransmissionChiller => Member::Transmission,
-            Self::ThermalBatteryHtc | Self::ThermalBatteryChiller => Member::ThermalBattery,
-        }
+        Self::MEMBERS[self as usize]
     }
 
     /// Loop that it belongs to.
     #[must_use]
     pub fn connection(self) -> Connection {
-        match self {
-            Self::CabinHtc | Self::BatteryHtc | Self::AmbientHtc | Self::ThermalBatteryHtc => Connection::Htc,
-            _ => Connection::Chiller,
-        }
+        if Self::HOT[self as usize] { Connection::Htc } else { Connection::Chiller }
     }
 
     /// The branch of a member in a loop, if there is one.
@@ -102,52 +118,66 @@ pub struct BranchTemperatures {
 }
 
 impl BranchTemperatures {
+    /// Temperature differences that drive the branches in their right direction [K].
+    #[must_use]
+    #[inline]
+    pub fn differences_k(&self) -> BranchValues {
+        [
+            self.htc_supply_k - self.core_inlet_k,
+            self.htc_supply_k - self.battery_k,
+            self.htc_supply_k - self.ambient_k,
+            self.motor_k - self.chiller_supply_k,
+            self.transmission_k - self.chiller_supply_k,
+            self.battery_k - self.chiller_supply_k,
+            self.ambient_k - self.chiller_supply_k,
+            self.core_inlet_k - self.chiller_supply_k,
+            self.thermal_battery_k - self.condenser_outlet_k,
+            self.thermal_battery_k - self.chiller_supply_k,
+            0.0,
+            0.0,
+        ]
+    }
+
     /// Temperature difference that drives a branch in its right direction [K].
     #[must_use]
     pub fn difference_k(&self, branch: Branch) -> f64 {
-        match branch {
-            Branch::CabinHtc => self.htc_supply_k - self.core_inlet_k,
-            Branch::BatteryHtc => self.htc_supply_k - self.battery_k,
-            Branch::AmbientHtc => self.htc_supply_k - self.ambient_k,
-            Branch::MotorChiller => self.motor_k - self.chiller_supply_k,
-            Branch::TransmissionChiller => self.transmission_k - self.chiller_supply_k,
-            Branch::BatteryChiller => self.battery_k - self.chiller_supply_k,
-            Branch::AmbientChiller => self.ambient_k - self.chiller_supply_k,
-            Branch::CabinChiller => self.core_inlet_k - self.chiller_supply_k,
-            Branch::ThermalBatteryHtc => self.thermal_battery_k - self.condenser_outlet_k,
-            Branch::ThermalBatteryChiller => self.thermal_battery_k - self.chiller_supply_k,
-        }
+        self.differences_k()[branch as usize]
     }
 }
 
-/// Whether the plant allows a connection: enough temperature difference, with hysteresis, and the frost
+/// Which branches the plant allows to be connected: enough temperature difference, with hysteresis, and the frost
 /// interlock of the front-end exchanger (paper sections 2.3 and 2.4).
 #[must_use]
+#[inline]
 pub fn allowed(
     vehicle: &VehicleParameters,
-    branch: Branch,
     temperatures: &BranchTemperatures,
-    connected: bool,
-) -> bool {
+    connected: &[bool; BRANCH_COUNT],
+) -> [bool; BRANCH_COUNT] {
     let switch = &vehicle.controls.thermal_switch;
-    let needed_k = if connected { switch.opening_difference_k } else { switch.closing_difference_k };
-    let frost = branch == Branch::AmbientChiller
-        && temperatures.ambient_k <= vehicle.ambient_exchanger.frost_interlock_degc.kelvin();
-    temperatures.difference_k(branch) > needed_k && !frost
+    let differences_k = temperatures.differences_k();
+    let mut allowed = from_fn(|i| {
+        let needed_k = if connected[i] { switch.opening_difference_k } else { switch.closing_difference_k };
+        differences_k[i] > needed_k
+    });
+    let frost = temperatures.ambient_k <= vehicle.ambient_exchanger.frost_interlock_degc.kelvin();
+    allowed[Branch::AmbientChiller as usize] &= !frost;
+    allowed
 }
 
 /// Which branches are connected, given what is asked and what was connected.
 #[must_use]
+#[inline]
 pub fn grant(
     vehicle: &VehicleParameters,
     connections: &[Connection; 6],
     temperatures: &BranchTemperatures,
     connected: &[bool; BRANCH_COUNT],
 ) -> [bool; BRANCH_COUNT] {
-    std::array::from_fn(|i| {
+    let allowed = allowed(vehicle, temperatures, connected);
+    from_fn(|i| {
         let branch = Branch::ALL[i];
-        connections[branch.member() as usize] == branch.connection()
-            && allowed(vehicle, branch, temperatures, connected[i])
+        (connections[branch.member() as usize] == branch.connection()) & allowed[i]
     })
 }
 
@@ -164,7 +194,27 @@ pub struct BranchFlows {
     pub speed_m_s: f64,
 }
 
-/// Share of a branch in its loop's flow.
+/// What conductances of branches follow from, a vehicle's parameters branch by branch.
+#[derive(Debug, Clone)]
+pub struct BranchTable {
+    /// Share of the loop's flow.
+    flow_share: BranchValues,
+    /// Share of that which a closed valve lets through, and what an open one adds.
+    valve_closed: BranchValues,
+    valve_span: BranchValues,
+    /// Coolant side of the exchanger at rest [W/K], and its rise with the vehicle's speed [W s/(K m)].
+    coolant_ua_w_k: BranchValues,
+    coolant_ua_per_speed_w_s_k_m: BranchValues,
+    heater_core_ua_w_k: f64,
+    cooling_core_ua_w_k: f64,
+    /// What becomes of the flow of closed branches, HTC and chiller loop.
+    closed_branches: [ClosedBranches; 2],
+}
+
+/// Branches whose exchangers have air on their other side, hence no coolant side of their own.
+const CORES: [usize; 2] = [Branch::CabinHtc as usize, Branch::CabinChiller as usize];
+
+/// Share of a member's branch in its loop's flow.
 fn share(shares: &BranchShares, member: Member) -> f64 {
     match member {
         Member::Cabin => shares.cabin,
@@ -176,79 +226,102 @@ fn share(shares: &BranchShares, member: Member) -> f64 {
     }
 }
 
-/// Share of a loop's flow that its open branches have together, 1 where closed branches keep theirs.
-fn open_share(circuit: &LoopParameters, connection: Connection, connected: &[bool; BRANCH_COUNT]) -> f64 {
-    let cooling = match connection {
-        Connection::Htc => connected[Branch::AmbientHtc as usize],
-        _ => connected[Branch::CabinChiller as usize],
-    };
-    let redistributes = match circuit.branch_shares.closed_branches {
-        ClosedBranches::Bypass => false,
-        ClosedBranches::Redistribute => true,
-        ClosedBranches::RedistributeInCooling => cooling,
-    };
-    if !redistributes {
-        return 1.0;
-    }
-    let open: f64 = Branch::ALL
-        .iter()
-        .zip(connected)
-        .filter(|(branch, on)| **on && branch.connection() == connection)
-        .map(|(branch, _)| share(&circuit.branch_shares, branch.member()))
-        .sum();
-    if open > 0.0 { open } else { 1.0 }
+/// A value for each branch.
+fn each(value: impl Fn(Branch) -> f64) -> BranchValues {
+    from_fn(|i| Branch::ALL.get(i).map_or(0.0, |&branch| value(branch)))
 }
 
-/// Largest conductance of each branch between its two inlet temperatures [W/K] (effectiveness-NTU).
-#[must_use]
-pub fn largest_conductances_w_k(
-    vehicle: &VehicleParameters,
-    demand: &Demand,
-    flows: &BranchFlows,
-    connected: &[bool; BRANCH_COUNT],
-) -> [f64; BRANCH_COUNT] {
-    let htc_open = open_share(&vehicle.htc.circuit, Connection::Htc, connected);
-    let chiller_open = open_share(&vehicle.chiller.circuit, Connection::Chiller, connected);
-    std::array::from_fn(|i| {
-        if !connected[i] {
-            return 0.0;
-        }
-        let branch = Branch::ALL[i];
-        let member = branch.member();
-        let (circuit, rate_w_k, open) = match branch.connection() {
-            Connection::Htc => (&vehicle.htc.circuit, flows.htc_rate_w_k, htc_open),
-            _ => (&vehicle.chiller.circuit, flows.chiller_rate_w_k, chiller_open),
+impl BranchTable {
+    /// Branches of a vehicle.
+    #[must_use]
+    pub fn of(vehicle: &VehicleParameters) -> Self {
+        let circuit = |branch: Branch| -> &LoopParameters {
+            if Branch::HOT[branch as usize] { &vehicle.htc.circuit } else { &vehicle.chiller.circuit }
         };
-        let valve = circuit.valve_closed
-            + demand.valves[member as usize] * (circuit.valve_open - circuit.valve_closed);
+        let front_end = &vehicle.ambient_exchanger;
+        Self {
+            flow_share: each(|branch| share(&circuit(branch).branch_shares, branch.member())),
+            valve_closed: each(|branch| circuit(branch).valve_closed),
+            valve_span: each(|branch| circuit(branch).valve_open - circuit(branch).valve_closed),
+            coolant_ua_w_k: each(|branch| match branch {
+                Branch::CabinHtc | Branch::CabinChiller => 0.0,
+                Branch::BatteryHtc | Branch::BatteryChiller => vehicle.battery.coolant_ua_w_k,
+                Branch::AmbientHtc => front_end.radiator_ua_w_k,
+                Branch::AmbientChiller => front_end.source_ua_w_k,
+                Branch::MotorChiller => vehicle.motor.coolant_ua_w_k,
+                Branch::TransmissionChiller => vehicle.transmission.coolant_ua_w_k,
+                Branch::ThermalBatteryHtc | Branch::ThermalBatteryChiller => {
+                    vehicle.thermal_battery.coolant_ua_w_k
+                }
+            }),
+            coolant_ua_per_speed_w_s_k_m: each(|branch| match branch {
+                Branch::AmbientHtc => front_end.radiator_ua_per_speed_w_s_k_m,
+                Branch::AmbientChiller => front_end.source_ua_per_speed_w_s_k_m,
+                _ => 0.0,
+            }),
+            heater_core_ua_w_k: vehicle.cabin.heater_core_ua_w_k,
+            cooling_core_ua_w_k: vehicle.cabin.cooling_core_ua_w_k,
+            closed_branches: [&vehicle.htc.circuit, &vehicle.chiller.circuit]
+                .map(|circuit| circuit.branch_shares.closed_branches),
+        }
+    }
+
+    /// Share of a loop's flow that its open branches have together, 1 where closed branches keep theirs.
+    #[inline]
+    fn open_share(&self, hot: bool, connected: &[bool; BRANCH_COUNT]) -> f64 {
+        let cooling = if hot { Branch::AmbientHtc } else { Branch::CabinChiller };
+        let redistributes = match self.closed_branches[usize::from(!hot)] {
+            ClosedBranches::Bypass => false,
+            ClosedBranches::Redistribute => true,
+            ClosedBranches::RedistributeInCooling => connected[cooling as usize],
+        };
+        let counts: [f64; BRANCH_COUNT] =
+            from_fn(|i| f64::from(u8::from(connected[i] & (Branch::HOT[i] == hot))));
+        let open = (0..BRANCH_COUNT).fold(0.0, |sum, i| fused(counts[i], self.flow_share[i], sum));
+        if redistributes & (open > 0.0) { open } else { 1.0 }
+    }
+
+    /// Largest conductance of each branch between its two inlet temperatures [W/K] (effectiveness-NTU); 0 where it is
+    /// not connected.
+    #[must_use]
+    #[inline]
+    pub fn largest_conductances_w_k(
+        &self,
+        demand: &Demand,
+        flows: &BranchFlows,
+        connected: &[bool; BRANCH_COUNT],
+    ) -> BranchValues {
+        let mut open = [0.0; BRANCH_PLACES];
+        let mut rate_w_k = [0.0; BRANCH_PLACES];
+        let mut valve = [0.0; BRANCH_PLACES];
+        let (hot_open, cold_open) = (self.open_share(true, connected), self.open_share(false, connected));
+        for i in 0..BRANCH_COUNT {
+            (open[i], rate_w_k[i]) =
+                if Branch::HOT[i] { (hot_open, flows.htc_rate_w_k) } else { (cold_open, flows.chiller_rate_w_k) };
+            valve[i] = demand.valves[Branch::MEMBERS[i] as usize];
+        }
+        let mut flow_share: BranchValues = from_fn(|i| self.flow_share[i] / open[i]);
         // The thermal battery is in series in the HTC: it sees the whole flow.
-        let flow_share = if branch == Branch::ThermalBatteryHtc {
-            1.0
+        flow_share[Branch::ThermalBatteryHtc as usize] = 1.0;
+        let coolant_w_k: BranchValues = from_fn(|i| {
+            rate_w_k[i] * flow_share[i] * (self.valve_closed[i] + valve[i] * self.valve_span[i])
+        });
+        let mut largest_w_k: BranchValues = from_fn(|i| {
+            let ua_w_k = self.coolant_ua_w_k[i] + self.coolant_ua_per_speed_w_s_k_m[i] * flows.speed_m_s;
+            inlet_conductance_w_k(coolant_w_k[i], ua_w_k)
+        });
+        let [heater, cooler] = CORES;
+        // The cabin is connected to one loop at most.
+        let (core, core_ua_w_k) = if connected[cooler] {
+            (cooler, self.cooling_core_ua_w_k)
         } else {
-            share(&circuit.branch_shares, member) / open
+            (heater, self.heater_core_ua_w_k)
         };
-        let coolant_w_k = rate_w_k * flow_share * valve;
-        match branch {
-            Branch::CabinHtc => vehicle.cabin.heater_core_conductance_w_k(coolant_w_k, &flows.ventilation),
-            Branch::CabinChiller => {
-                vehicle.cabin.cooling_core_conductance_w_k(coolant_w_k, &flows.ventilation)
-            }
-            Branch::BatteryHtc | Branch::BatteryChiller => {
-                inlet_conductance_w_k(coolant_w_k, vehicle.battery.coolant_ua_w_k)
-            }
-            Branch::AmbientHtc => {
-                inlet_conductance_w_k(coolant_w_k, vehicle.ambient_exchanger.radiator_ua_w_k(flows.speed_m_s))
-            }
-            Branch::AmbientChiller => {
-                inlet_conductance_w_k(coolant_w_k, vehicle.ambient_exchanger.source_ua_w_k(flows.speed_m_s))
-            }
-            Branch::MotorChiller => inlet_conductance_w_k(coolant_w_k, vehicle.motor.coolant_ua_w_k),
-            Branch::TransmissionChiller => {
-                inlet_conductance_w_k(coolant_w_k, vehicle.transmission.coolant_ua_w_k)
-            }
-            Branch::ThermalBatteryHtc | Branch::ThermalBatteryChiller => {
-                inlet_conductance_w_k(coolant_w_k, vehicle.thermal_battery.coolant_ua_w_k)
-            }
+        largest_w_k[core] =
+            counterflow_conductance_w_k(coolant_w_k[core], flows.ventilation.supply_rate_w_k, core_ua_w_k);
+        for i in 0..BRANCH_COUNT {
+            largest_w_k[i] = if connected[i] { largest_w_k[i] } else { 0.0 };
         }
-    })
+        largest_w_k
+    }
 }

@@ -3,18 +3,6 @@
 use crate::config::coolant::AmbientExchangerParameters;
 
 impl AmbientExchangerParameters {
-    /// Conductance as heat source [W/K].
-    #[must_use]
-    pub fn source_ua_w_k(&self, speed_m_s: f64) -> f64 {
-        self.source_ua_w_k + self.source_ua_per_speed_w_s_k_m * speed_m_s
-    }
-
-    /// Conductance as radiator [W/K].
-    #[must_use]
-    pub fn radiator_ua_w_k(&self, speed_m_s: f64) -> f64 {
-        self.radiator_ua_w_k + self.radiator_ua_per_speed_w_s_k_m * speed_m_s
-    }
-
     /// Fan power while connected; it fades out linearly as ram air takes over [W].
     #[must_use]
     pub fn fan_power_w(&self, speed_m_s: f64) -> f64 {

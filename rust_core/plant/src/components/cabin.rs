@@ -1,6 +1,5 @@
 //! Cabin: ventilation, panels and cores (paper section 2.2).
 
-use super::heat_exchanger::counterflow_conductance_w_k;
 use crate::config::cabin::CabinParameters;
 use crate::media::air::SPECIFIC_HEAT_J_KG_K;
 
@@ -42,18 +41,6 @@ impl CabinParameters {
     #[must_use]
     pub fn panel_conductance_w_k(&self, speed_m_s: f64) -> f64 {
         self.panel_conductance_w_k + self.panel_conductance_per_speed_w_s_k_m * speed_m_s
-    }
-
-    /// Largest conductance of the heater core between coolant and air inlet [W/K].
-    #[must_use]
-    pub fn heater_core_conductance_w_k(&self, coolant_rate_w_k: f64, ventilation: &Ventilation) -> f64 {
-        counterflow_conductance_w_k(coolant_rate_w_k, ventilation.supply_rate_w_k, self.heater_core_ua_w_k)
-    }
-
-    /// Largest conductance of the cooling core between air inlet and coolant [W/K].
-    #[must_use]
-    pub fn cooling_core_conductance_w_k(&self, coolant_rate_w_k: f64, ventilation: &Ventilation) -> f64 {
-        counterflow_conductance_w_k(coolant_rate_w_k, ventilation.supply_rate_w_k, self.cooling_core_ua_w_k)
     }
 
     /// Largest conductance of the cooling core that leaves the air warm enough not to ice it up [W/K].

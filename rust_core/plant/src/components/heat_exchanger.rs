@@ -8,10 +8,8 @@ use crate::numerics::elementary;
 #[must_use]
 #[inline]
 pub fn inlet_conductance_w_k(capacity_rate_w_k: f64, ua_w_k: f64) -> f64 {
-    if capacity_rate_w_k <= 0.0 {
-        return 0.0;
-    }
-    -capacity_rate_w_k * elementary::exp_m1(-ua_w_k / capacity_rate_w_k)
+    let conductance_w_k = -capacity_rate_w_k * elementary::exp_m1(-ua_w_k / capacity_rate_w_k);
+    if capacity_rate_w_k > 0.0 { conductance_w_k } else { 0.0 }
 }
 
 /// Conductance between the inlet temperatures of two flows in counterflow [W/K].

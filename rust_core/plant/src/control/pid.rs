@@ -64,10 +64,10 @@ impl ResetPid {
 /// PID in incremental form: the output is the state, so its limits are its anti-windup.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct IncrementalPid {
-    output: f64,
-    last_error: f64,
-    last_change: f64,
-    started: bool,
+    pub(super) output: f64,
+    pub(super) last_error: f64,
+    pub(super) last_change: f64,
+    pub(super) started: bool,
 }
 
 impl IncrementalPid {
@@ -85,16 +85,25 @@ impl IncrementalPid {
 
     /// Moves the output for an error and limits it to `low..=high`.
     pub fn update(&mut self, gains: &PidParameters, error: f64, period_s: f64, low: f64, high: f64) -> f64 {
+        *self = self.updated(gains, error, period_s, low, high);
+        self.output
+    }
+
+    /// The controller after an error, its output limited to `low..=high`.
+    #[must_use]
+    #[inline]
+    pub fn updated(self, gains: &PidParameters, error: f64, period_s: f64, low: f64, high: f64) -> Self {
         let change = if self.started { error - self.last_error } else { 0.0 };
         let bend = change - self.last_change;
-        self.last_change = change;
-        self.last_error = error;
-        self.started = true;
         let step = gains.proportional * change
             + gains.integral * error * period_s
             + gains.derivative * bend / period_s;
-        self.output = (self.output + step).clamp(low, high);
-        self.output
+        Self {
+            output: (self.output + step).clamp(low, high),
+            last_error: error,
+            last_change: change,
+            started: true,
+        }
     }
 }
 

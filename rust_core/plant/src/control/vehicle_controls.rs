@@ -1,9 +1,8 @@
 //! The plant's own controls, once a control period: connections, pumps, switches, PTC, condensing pressure.
 
-use super::pid::{IncrementalPid, ResetGains};
-use super::thermal_switch;
+use super::pid::ResetGains;
 use crate::circuits::assembly::NODES;
-use crate::circuits::branches::{self, BRANCH_COUNT, Branch, BranchFlows, BranchTemperatures};
+use crate::circuits::branches::{self, BRANCH_PLACES, Branch, BranchFlows, BranchTemperatures, BranchValues};
 use crate::command::Demand;
 use crate::components::cabin::Ventilation;
 use crate::components::pump;
@@ -20,7 +19,7 @@ const PASCAL_PER_BAR: f64 = 1e5;
 pub(crate) struct Period {
     pub demand: Demand,
     pub ventilation: Ventilation,
-    pub branches_w_k: [f64; BRANCH_COUNT],
+    pub branches_w_k: BranchValues,
     pub htc_rate_w_k: f64,
     pub chiller_rate_w_k: f64,
     pub pumps_w: [f64; 2],
@@ -99,22 +98,20 @@ impl Plant {
             ventilation,
             speed_m_s,
         };
-        let largest = branches::largest_conductances_w_k(vehicle, &demand, &flows, &state.connected);
-        let mut branches_w_k = [0.0; BRANCH_COUNT];
-        for (i, branch) in Branch::ALL.into_iter().enumerate() {
-            if largest[i] <= 0.0 {
-                state.switches[i] = IncrementalPid::default();
-                continue;
-            }
-            branches_w_k[i] = largest[i]
-                * thermal_switch::track(
-                    &mut state.switches[i],
-                    &vehicle.controls.thermal_switch.pid,
-                    demand.requests_w[branch.member() as usize],
-                    largest[i],
-                    temperatures.difference_k(branch),
-                    CONTROL_PERIOD_S,
-                );
+        let largest_w_k = self.branches.largest_conductances_w_k(&demand, &flows, &state.connected);
+        let mut requests_w = [0.0; BRANCH_PLACES];
+        for branch in Branch::ALL {
+            requests_w[branch as usize] = demand.requests_w[branch.member() as usize];
+        }
+        let mut branches_w_k = state.switches.track(
+            &vehicle.controls.thermal_switch.pid,
+            &requests_w,
+            &largest_w_k,
+            &temperatures.differences_k(),
+            CONTROL_PERIOD_S,
+        );
+        for (position, largest_w_k) in branches_w_k.iter_mut().zip(largest_w_k) {
+            *position *= largest_w_k;
         }
         let (inlet_k, coolant_k) = (temperatures.core_inlet_k, temperatures.chiller_supply_k);
         let cooling_core_w_k = &mut branches_w_k[Branch::CabinChiller as usize];
