@@ -52,9 +52,13 @@ fn refrigerant(criterion: &mut Criterion) {
         speed_limit_rev_s: experiment.plant.vehicle.refrigeration.compressor.maximum_speed_rev_s,
         hold_minimum_speed: false,
     };
-    let solution = run.state.refrigeration.warm_start.expect("the compressor runs");
-    // About as far away as the solution of the second before.
-    let near = WarmStart { condensing_k: solution.condensing_k - 0.05, ..solution };
+    let solution = record.refrigeration;
+    // About as far away as the start value of a second.
+    let near = WarmStart {
+        evaporating_k: solution.evaporating_temperature_k,
+        condensing_k: solution.condensing_temperature_k - 0.05,
+        speed_rev_s: solution.speed_rev_s,
+    };
     let mut group = criterion.benchmark_group("refrigerant solve");
     group.bench_function("warm", |b| b.iter(|| cycle.solve(&boundary, &demand, black_box(Some(&near)))));
     group.bench_function("cold", |b| b.iter(|| cycle.solve(&boundary, &demand, black_box(None))));

@@ -19,6 +19,9 @@ const LEAST_CONDUCTANCE_W_K: f64 = 1.0;
 /// Change in a step [K or rev/s] beyond which a solution jumped, so that the next will not go on the same way.
 const LARGEST_TREND: f64 = 1.0;
 
+/// Change of speed, as a share of it, from which on a demand that jumped explains it better than the trend.
+const SMALLEST_JUMP: f64 = 0.03;
+
 /// What the coolants offer during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LoopBoundary {
@@ -122,66 +125,85 @@ pub struct LoopResult {
     pub bracketed: bool,
 }
 
+/// A solution with the machine running, as what changes least from one second to the next.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LastSolution {
+    /// Coolant entering the evaporator less evaporating temperature, condensing temperature less coolant entering the
+    /// condenser [K], speed [rev/s].
+    distances: [f64; 3],
+    /// How much these changed in the last step; 0 where they jumped.
+    trend: [f64; 3],
+    /// Electrical power without start loss [W].
+    electric_power_w: f64,
+    /// Power or speed held the machine back, nothing else.
+    free: bool,
+}
+
 /// Memory of the loop.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RefrigerationState {
     /// Memory of the envelope.
     pub compressor: CompressorState,
     /// Last solution with the machine running.
-    pub warm_start: Option<WarmStart>,
-    /// Change of evaporating temperature [K], condensing temperature [K] and speed [rev/s] up to it in one step; 0
-    /// where they jumped.
-    pub trend: [f64; 3],
+    pub last: Option<LastSolution>,
 }
 
 impl RefrigerationState {
     /// A vehicle that was parked for long.
     #[must_use]
     pub fn parked() -> Self {
-        Self { compressor: CompressorState::parked(), warm_start: None, trend: [0.0; 3] }
-    }
-}
-
-impl RefrigerationState {
-    /// Where the next solution is expected: as far from the last as that was from the one before.
-    fn expected(&self) -> Option<WarmStart> {
-        let [evaporating_k, condensing_k, speed_rev_s] = self.trend;
-        self.warm_start.map(|last| WarmStart {
-            evaporating_k: last.evaporating_k + evaporating_k,
-            condensing_k: last.condensing_k + condensing_k,
-            speed_rev_s: last.speed_rev_s + speed_rev_s,
-        })
+        Self { compressor: CompressorState::parked(), last: None }
     }
 
     /// Keeps a solution, if the machine ran, and how it changed.
-    fn remember(&mut self, solution: Option<WarmStart>) {
-        self.trend = match (self.warm_start, solution) {
-            (Some(last), Some(now)) => {
-                let change = [
-                    now.evaporating_k - last.evaporating_k,
-                    now.condensing_k - last.condensing_k,
-                    now.speed_rev_s - last.speed_rev_s,
-                ];
-                let steady = change.iter().all(|part| part.abs() < LARGEST_TREND);
-                if steady { change } else { [0.0; 3] }
-            }
-            _ => [0.0; 3],
+    fn remember(&mut self, boundary: &LoopBoundary, result: &LoopResult) {
+        if !result.running() {
+            return;
+        }
+        let distances = [
+            boundary.cold_return_k - result.evaporating_temperature_k,
+            result.condensing_temperature_k - boundary.hot_return_k,
+            result.speed_rev_s,
+        ];
+        let change = self.last.map_or([f64::INFINITY; 3], |last| {
+            std::array::from_fn(|k| distances[k] - last.distances[k])
+        });
+        let steady = change.iter().all(|part| part.abs() < LARGEST_TREND);
+        self.last = Some(LastSolution {
+            distances,
+            trend: if steady { change } else { [0.0; 3] },
+            electric_power_w: result.electric_power_w,
+            free: matches!(result.limited_by, Limit::Power | Limit::Speed | Limit::MinimumSpeed),
+        });
+    }
+}
+
+impl LastSolution {
+    /// Where the solution of a demand is expected.
+    ///
+    /// Heat flows, hence the temperature differences that drive them, rise about with speed; power rises with speed to
+    /// the power of about 4/3, because the lift rises too. Where speed hardly changes, everything goes on as before.
+    fn expected(&self, boundary: &LoopBoundary, demand: &LoopDemand, minimum_speed_rev_s: f64) -> WarmStart {
+        let more_power = (demand.power_limit_w.max(0.0) / self.electric_power_w).sqrt();
+        let by_power = more_power * more_power.sqrt();
+        let by_power = if self.free { by_power } else { by_power.min(1.0) };
+        let speed_rev_s =
+            (self.distances[2] * by_power).min(demand.speed_limit_rev_s).max(minimum_speed_rev_s);
+        let faster = speed_rev_s / self.distances[2];
+        let [cold_k, hot_k, speed_rev_s] = if (faster - 1.0).abs() < SMALLEST_JUMP {
+            std::array::from_fn(|k| self.distances[k] + self.trend[k])
+        } else {
+            self.distances.map(|distance| distance * faster)
         };
-        self.warm_start = solution.or(self.warm_start);
+        WarmStart {
+            evaporating_k: boundary.cold_return_k - cold_k,
+            condensing_k: boundary.hot_return_k + hot_k,
+            speed_rev_s,
+        }
     }
 }
 
 impl LoopResult {
-    /// The solution as the next start value.
-    #[must_use]
-    pub fn warm_start(&self) -> Option<WarmStart> {
-        self.running().then_some(WarmStart {
-            evaporating_k: self.evaporating_temperature_k,
-            condensing_k: self.condensing_temperature_k,
-            speed_rev_s: self.speed_rev_s,
-        })
-    }
-
     /// The compressor turns.
     #[must_use]
     pub fn running(&self) -> bool {
@@ -213,7 +235,10 @@ impl RefrigerationCycle {
                 speed_limit_rev_s: state.compressor.speed_limit_rev_s(parameters, step_s),
                 hold_minimum_speed,
             };
-            self.solve(boundary, &demand, state.expected().as_ref())
+            let expected = state
+                .last
+                .map(|last| last.expected(boundary, &demand, parameters.minimum_speed_rev_s));
+            self.solve(boundary, &demand, expected.as_ref())
         } else {
             self.at_rest(boundary, LoopStatus::Off, Limit::Power)
         };
@@ -226,11 +251,11 @@ impl RefrigerationCycle {
             // A start that a limit refuses is tried again only after another minimum time off.
             state.compressor.time_in_state_s = 0.0;
         }
+        state.remember(boundary, &result);
         let speed_rev_s = result.running().then_some(result.speed_rev_s);
         result.start_loss_w = state.compressor.advance(parameters, speed_rev_s, forced, step_s);
         result.electric_power_w += result.start_loss_w;
         result.loss_to_ambient_w += result.start_loss_w;
-        state.remember(result.warm_start());
         result
     }
 
