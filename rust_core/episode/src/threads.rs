@@ -2,15 +2,15 @@
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::hint::spin_loop;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Entries that a thread takes at a time: some microseconds of work, so that no thread waits long for another.
 const BATCH: usize = 16;
 
-/// So long helpers look for more work before they sleep: waking one takes tens of microseconds, as long as a tight
-/// loop of steps spends between two of them.
+/// So long threads look for more work, or wait for the others' last batches, before they sleep: waking one takes tens of
+/// microseconds, as long as a tight loop of steps spends between two of them.
 const AWAKE: Duration = Duration::from_micros(100);
 
 /// Consecutive entries that can be divided.
@@ -92,12 +92,19 @@ impl Threads {
                 }
             }
         };
-        let toil = &toil;
+        let (toil, at_work) = (&toil, &AtomicUsize::new(count - 1));
         helpers.pool.in_place_scope(|scope| {
             for thread in 1..count {
-                scope.spawn(move |_| toil(thread));
+                scope.spawn(move |_| {
+                    toil(thread);
+                    at_work.fetch_sub(1, Ordering::Release);
+                });
             }
             toil(0);
+            let began = Instant::now();
+            while at_work.load(Ordering::Acquire) > 0 && began.elapsed() < AWAKE {
+                spin_loop();
+            }
         });
         helpers.stay_awake();
     }
