@@ -133,7 +133,12 @@ struct Job<'a> {
     truncated: &'a mut bool,
     parts: [f64; PARTS],
     told: &'a Mutex<Told>,
+    /// What will be worked on soon.
+    ahead: Option<&'a Episode>,
 }
+
+/// So many environments ahead of the one that is worked on are brought into the cache.
+const AHEAD: usize = 2;
 
 /// Cuts off the first entries of a slice.
 fn cut<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
@@ -352,9 +357,6 @@ impl Batch<'_> {
         let mut rest = &mut *self.episodes;
         for (place, observation) in self.observations.chunks_mut(width).enumerate() {
             let Some(episode) = rest.split_off_first_mut() else { return };
-            if let Some(next) = rest.first() {
-                prefetch(next);
-            }
             let mut job = Job {
                 index: self.first + place,
                 episode,
@@ -366,6 +368,7 @@ impl Batch<'_> {
                 truncated: &mut self.truncated[place],
                 parts: [0.0; PARTS],
                 told,
+                ahead: rest.get(AHEAD - 1),
             };
             job.work(actions, autoreset, step_limit);
             let parts = job.parts;
@@ -378,13 +381,23 @@ impl Batch<'_> {
 
 impl Job<'_> {
     fn work(&mut self, actions: Actions<'_>, autoreset: Autoreset, step_limit: Option<u64>) {
+        self.fetch_ahead(0, 3);
         (*self.reward, *self.terminated, *self.truncated) = (0.0, false, false);
         if *self.over && autoreset == Autoreset::NextStep {
             self.begin();
         } else {
             self.step(actions, autoreset, step_limit);
         }
+        self.fetch_ahead(1, 3);
         self.episode.observe(self.observation);
+        self.fetch_ahead(2, 3);
+    }
+
+    /// Asks for a share of what will be worked on soon.
+    fn fetch_ahead(&self, share: usize, shares: usize) {
+        if let Some(episode) = self.ahead {
+            prefetch(episode, share, shares);
+        }
     }
 
     fn begin(&mut self) {

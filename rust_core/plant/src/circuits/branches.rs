@@ -296,16 +296,18 @@ impl BranchTable {
         let mut valve = [0.0; BRANCH_PLACES];
         let (hot_open, cold_open) = (self.open_share(true, connected), self.open_share(false, connected));
         for i in 0..BRANCH_COUNT {
-            (open[i], rate_w_k[i]) =
-                if Branch::HOT[i] { (hot_open, flows.htc_rate_w_k) } else { (cold_open, flows.chiller_rate_w_k) };
+            (open[i], rate_w_k[i]) = if Branch::HOT[i] {
+                (hot_open, flows.htc_rate_w_k)
+            } else {
+                (cold_open, flows.chiller_rate_w_k)
+            };
             valve[i] = demand.valves[Branch::MEMBERS[i] as usize];
         }
         let mut flow_share: BranchValues = from_fn(|i| self.flow_share[i] / open[i]);
         // The thermal battery is in series in the HTC: it sees the whole flow.
         flow_share[Branch::ThermalBatteryHtc as usize] = 1.0;
-        let coolant_w_k: BranchValues = from_fn(|i| {
-            rate_w_k[i] * flow_share[i] * (self.valve_closed[i] + valve[i] * self.valve_span[i])
-        });
+        let coolant_w_k: BranchValues =
+            from_fn(|i| rate_w_k[i] * flow_share[i] * (self.valve_closed[i] + valve[i] * self.valve_span[i]));
         let mut largest_w_k: BranchValues = from_fn(|i| {
             let ua_w_k = self.coolant_ua_w_k[i] + self.coolant_ua_per_speed_w_s_k_m[i] * flows.speed_m_s;
             inlet_conductance_w_k(coolant_w_k[i], ua_w_k)

@@ -165,9 +165,9 @@ impl RefrigerationState {
             result.condensing_temperature_k - boundary.hot_return_k,
             result.speed_rev_s,
         ];
-        let change = self.last.map_or([f64::INFINITY; 3], |last| {
-            std::array::from_fn(|k| distances[k] - last.distances[k])
-        });
+        let change = self
+            .last
+            .map_or([f64::INFINITY; 3], |last| std::array::from_fn(|k| distances[k] - last.distances[k]));
         let steady = change.iter().all(|part| part.abs() < LARGEST_TREND);
         self.last = Some(LastSolution {
             distances,
@@ -235,9 +235,8 @@ impl RefrigerationCycle {
                 speed_limit_rev_s: state.compressor.speed_limit_rev_s(parameters, step_s),
                 hold_minimum_speed,
             };
-            let expected = state
-                .last
-                .map(|last| last.expected(boundary, &demand, parameters.minimum_speed_rev_s));
+            let expected =
+                state.last.map(|last| last.expected(boundary, &demand, parameters.minimum_speed_rev_s));
             self.solve(boundary, &demand, expected.as_ref())
         } else {
             self.at_rest(boundary, LoopStatus::Off, Limit::Power)
