@@ -44,7 +44,7 @@ fn moment(scenario: &str, after_s: usize) -> (Experiment, Run, StepRecord) {
 }
 
 fn refrigerant(criterion: &mut Criterion) {
-    let (experiment, run, record) = moment("jeffs2019/case1-4", 600);
+    let (experiment, _, record) = moment("jeffs2019/case1-4", 600);
     let cycle = &experiment.plant.refrigeration;
     let boundary = record.boundary;
     let demand = LoopDemand {
