@@ -9,6 +9,7 @@ use hp_plant::flows::Flow;
 use hp_plant::numerics::thermal_network::Node;
 use hp_plant::signals::{self, Signal, View};
 use hp_plant::simulation::Experiment;
+use hp_plant::unrolled;
 
 /// A row of an observation.
 #[derive(Debug, Clone)]
@@ -91,6 +92,17 @@ const DEFAULT_SIGNALS: [(&str, f64, f64); 36] = [
     ("transmission_chiller_heat_flow_w", -10_000.0, 10_000.0),
 ];
 
+/// The signals seen by default, found while compiling: to read them is a straight line of loads.
+const DEFAULTS: [Signal; DEFAULT_SIGNALS.len()] = {
+    let mut signals = [signals::TIME; DEFAULT_SIGNALS.len()];
+    let mut place = 0;
+    while place < signals.len() {
+        signals[place] = signals::find(DEFAULT_SIGNALS[place].0).expect("a signal of this name");
+        place += 1;
+    }
+    signals
+};
+
 /// Bounds of hidden signals whose unit does not tell them.
 const HIDDEN_BOUNDS: [(&str, f64, f64); 6] = [
     ("charge_soc", 0.0, 1.0),
@@ -152,12 +164,8 @@ pub struct Look<'a> {
 #[must_use]
 pub fn all(actions: &ActionTable) -> Vec<Observed> {
     let mut rows = Vec::with_capacity(160);
-    for (name, low, high) in DEFAULT_SIGNALS {
-        if let Some(signal) = signals::find(name) {
-            rows.push(
-                row(name, signal.unit, (low, high), Source::Signal(signal)).meaning(signal.description),
-            );
-        }
+    for ((name, low, high), signal) in DEFAULT_SIGNALS.into_iter().zip(DEFAULTS) {
+        rows.push(row(name, signal.unit, (low, high), Source::Signal(signal)).meaning(signal.description));
     }
     rows.push(row("solar_gain_w", "W", (0.0, 1500.0), Source::Solar).meaning("solar heat into the cabin"));
     rows.push(row("occupants", "-", (0.0, 5.0), Source::Occupants).meaning("people in the cabin"));
@@ -195,6 +203,8 @@ pub fn all(actions: &ActionTable) -> Vec<Observed> {
 /// Places of an observation by where their values come from: read without asking each row what kind it is.
 #[derive(Debug, Clone, Default)]
 struct Places {
+    /// The first rows are those of [`DEFAULTS`], which no other field repeats.
+    defaults_first: bool,
     signals: Vec<(usize, Signal)>,
     temperatures: Vec<(usize, Node)>,
     flows: Vec<(usize, Flow)>,
@@ -208,8 +218,13 @@ struct Places {
 
 impl Places {
     fn of(rows: &[Observed]) -> Self {
-        let mut places = Self::default();
-        for (place, row) in rows.iter().enumerate() {
+        let names = rows.iter().map(|row| row.name.as_str());
+        let mut places = Self {
+            defaults_first: names.clone().take(DEFAULTS.len()).eq(DEFAULTS.map(|s| s.name)),
+            ..Self::default()
+        };
+        let known = if places.defaults_first { DEFAULTS.len() } else { 0 };
+        for (place, row) in rows.iter().enumerate().skip(known) {
             match row.source {
                 Source::Signal(signal) => match (signal.flow(), signal.node()) {
                     (Some(flow), _) => places.flows.push((place, flow)),
@@ -227,8 +242,22 @@ impl Places {
         places
     }
 
+    /// Writes signal number `POSITION` of [`DEFAULTS`].
+    #[inline(always)]
+    fn read_default<const POSITION: usize>(view: &View<'_>, values: &mut [f64; DEFAULTS.len()]) {
+        if POSITION < DEFAULTS.len() {
+            values[POSITION] =
+                const { DEFAULTS[if POSITION < DEFAULTS.len() { POSITION } else { 0 }] }.read(view);
+        }
+    }
+
     /// Writes the values of all rows, which are 0 before.
     fn read(&self, look: &Look<'_>, values: &mut [f64]) {
+        if self.defaults_first
+            && let Some(values) = values.first_chunk_mut()
+        {
+            unrolled!(read_default(&look.view, values));
+        }
         for &(place, signal) in &self.signals {
             values[place] = signal.read(&look.view);
         }

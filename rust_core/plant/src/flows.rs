@@ -18,13 +18,13 @@ macro_rules! flows {
 
             /// Name of the trajectory column.
             #[must_use]
-            pub fn column(self) -> &'static str {
+            pub const fn column(self) -> &'static str {
                 match self { $( Self::$name => $text, )* }
             }
 
             /// What flows from where to where.
             #[must_use]
-            pub fn description(self) -> &'static str {
+            pub const fn description(self) -> &'static str {
                 match self { $( Self::$name => concat!($( $doc, )*).trim_ascii_start(), )* }
             }
         }

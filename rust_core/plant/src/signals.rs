@@ -70,6 +70,7 @@ impl Signal {
 
     /// Value at a view.
     #[must_use]
+    #[inline(always)]
     pub fn read(&self, view: &View<'_>) -> f64 {
         match self.reader {
             Reader::Function(read) => read(view),
@@ -165,25 +166,67 @@ const CONNECTIONS: [(&str, Member); 6] = [
     ("cabin_connection", Member::Cabin),
 ];
 
-/// All signals, in column order.
-pub fn all() -> impl Iterator<Item = Signal> {
-    let connections = CONNECTIONS.into_iter().map(|(name, member)| Signal {
+const fn of_connection((name, member): (&'static str, Member)) -> Signal {
+    Signal {
         name,
         unit: "-",
         description: "loop that it is connected to: 0 none, 1 HTC, 2 chiller",
         reader: Reader::Connection(member),
-    });
-    let flows = Flow::ALL.iter().map(|&flow| Signal {
-        name: flow.column(),
-        unit: "W",
-        description: flow.description(),
-        reader: Reader::Flow(flow),
-    });
-    STATES.iter().copied().chain(connections).chain(flows)
+    }
 }
 
-/// The signal of a name.
+const fn of_flow(flow: Flow) -> Signal {
+    Signal { name: flow.column(), unit: "W", description: flow.description(), reader: Reader::Flow(flow) }
+}
+
+/// The first of all signals.
+pub const TIME: Signal = STATES[0];
+
+/// Number of signals.
+const SIGNALS: usize = STATES.len() + CONNECTIONS.len() + Flow::ALL.len();
+
+/// The signal in a column.
+const fn at(column: usize) -> Signal {
+    const FIRST_FLOW: usize = STATES.len() + CONNECTIONS.len();
+    if column < STATES.len() {
+        STATES[column]
+    } else if column < FIRST_FLOW {
+        of_connection(CONNECTIONS[column - STATES.len()])
+    } else {
+        of_flow(Flow::ALL[column - FIRST_FLOW])
+    }
+}
+
+/// All signals, in column order.
+pub fn all() -> impl Iterator<Item = Signal> {
+    (0..SIGNALS).map(at)
+}
+
+/// The signal of a name; a program can ask for it while it is compiled.
 #[must_use]
-pub fn find(name: &str) -> Option<Signal> {
-    all().find(|signal| signal.name == name)
+pub const fn find(name: &str) -> Option<Signal> {
+    let mut column = 0;
+    while column < SIGNALS {
+        let signal = at(column);
+        if same(signal.name.as_bytes(), name.as_bytes()) {
+            return Some(signal);
+        }
+        column += 1;
+    }
+    None
+}
+
+/// Whether two strings are the same, which `==` does not tell while compiling.
+const fn same(one: &[u8], other: &[u8]) -> bool {
+    if one.len() != other.len() {
+        return false;
+    }
+    let mut place = 0;
+    while place < one.len() {
+        if one[place] != other[place] {
+            return false;
+        }
+        place += 1;
+    }
+    true
 }

@@ -15,9 +15,11 @@ const MAXIMUM_OPERATIONS: usize = 96;
 const ABSENT: u8 = u8::MAX;
 
 /// Calls an associated function that is generic over a number with 0 to 95, so that each call knows its number when compiled.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! unrolled {
     ($function:ident $arguments:tt) => {
-        $crate::numerics::elimination::unrolled!(@ $function $arguments
+        $crate::unrolled!(@ $function $arguments
             0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31
             32 33 34 35 36 37 38 39 40 41 42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62 63
             64 65 66 67 68 69 70 71 72 73 74 75 76 77 78 79 80 81 82 83 84 85 86 87 88 89 90 91 92 93 94 95)
@@ -26,7 +28,6 @@ macro_rules! unrolled {
         $( Self::$function::<$number> $arguments; )*
     };
 }
-pub(super) use unrolled;
 
 /// One operation; places are entries of the matrix or nodes of a right-hand side.
 #[derive(Debug, Clone, Copy)]

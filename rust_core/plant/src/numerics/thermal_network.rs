@@ -6,7 +6,8 @@
 //! exchange the heat: a coolant branch is driven by the supply temperature and takes its heat from the return node.
 
 use super::elementary::fused;
-use super::elimination::{Elimination, MAXIMUM_ENTRIES, unrolled};
+use super::elimination::{Elimination, MAXIMUM_ENTRIES};
+use crate::unrolled;
 use std::marker::PhantomData;
 
 /// Largest number of nodes.
