@@ -183,6 +183,12 @@ impl Flows {
         }
     }
 
+    /// Values in the order of [`Flow::ALL`].
+    #[must_use]
+    pub fn values(&self) -> &[f64; FLOW_COUNT] {
+        &self.0
+    }
+
     /// Electrical power besides traction, compressor and PTC [W].
     #[must_use]
     pub fn base_load_w(&self) -> f64 {

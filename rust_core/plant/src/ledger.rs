@@ -3,7 +3,7 @@
 //! It knows boundary flows and stored energies only. It never sees the network's matrix, the refrigerant
 //! solve or any flow inside the vehicle, so an error in one of those shows up here.
 
-use crate::flows::{Flow, Flows};
+use crate::flows::{FLOW_COUNT, Flow, Flows};
 use serde::{Deserialize, Serialize};
 
 /// Energy stored in the vehicle, relative to fixed references [J].
@@ -43,6 +43,25 @@ pub const OUTFLOWS: [Flow; 17] = [
     Flow::ExhaustAmbient,
 ];
 
+/// How each flow counts: -1 enters, 1 leaves, 0 does not cross the boundary.
+const CROSSINGS: [f64; FLOW_COUNT] = {
+    let mut crossings = [0.0; FLOW_COUNT];
+    let mut place = 0;
+    while place < INFLOWS.len() {
+        crossings[INFLOWS[place] as usize] = -1.0;
+        place += 1;
+    }
+    place = 0;
+    while place < OUTFLOWS.len() {
+        crossings[OUTFLOWS[place] as usize] = 1.0;
+        place += 1;
+    }
+    crossings
+};
+
+/// So many flows are summed up side by side.
+const SIDE_BY_SIDE: usize = 4;
+
 /// Smallest power that the residual is compared with [W].
 pub const SMALLEST_POWER_W: f64 = 1000.0;
 
@@ -66,17 +85,29 @@ impl LedgerEntry {
 /// Balances a step.
 #[must_use]
 pub fn balance(flows: &Flows, stored: &StoredEnergyChange, step_s: f64) -> LedgerEntry {
-    let stores_w = [stored.kinetic_j, stored.chemical_j, stored.polarisation_j, stored.heat_j]
-        .map(|joule| joule / step_s);
-    let mut residual_w: f64 = stores_w.iter().sum();
-    let mut scale_w = stores_w.iter().fold(SMALLEST_POWER_W, |largest, power| largest.max(power.abs()));
-    for flow in INFLOWS {
-        residual_w -= flows[flow];
-        scale_w = scale_w.max(flows[flow].abs());
+    let stores_w: [f64; SIDE_BY_SIDE] =
+        [stored.kinetic_j, stored.chemical_j, stored.polarisation_j, stored.heat_j]
+            .map(|joule| joule / step_s);
+    let mut residuals_w = stores_w;
+    let mut scales_w = stores_w.map(f64::abs);
+    let (flows, last_flows) = flows.values().as_chunks::<SIDE_BY_SIDE>();
+    let (crossings, last_crossings) = CROSSINGS.as_chunks::<SIDE_BY_SIDE>();
+    for (flows, crossings) in flows.iter().zip(crossings) {
+        for place in 0..SIDE_BY_SIDE {
+            let crossing_w = flows[place] * crossings[place];
+            residuals_w[place] += crossing_w;
+            scales_w[place] = scales_w[place].max(crossing_w.abs());
+        }
     }
-    for flow in OUTFLOWS {
-        residual_w += flows[flow];
-        scale_w = scale_w.max(flows[flow].abs());
+    for (place, (flow, crossing)) in last_flows.iter().zip(last_crossings).enumerate() {
+        residuals_w[place] += flow * crossing;
+        scales_w[place] = scales_w[place].max((flow * crossing).abs());
     }
-    LedgerEntry { residual_w, scale_w }
+    let pair = |values: [f64; SIDE_BY_SIDE], join: fn(f64, f64) -> f64| {
+        join(join(values[0], values[1]), join(values[2], values[3]))
+    };
+    LedgerEntry {
+        residual_w: pair(residuals_w, |a, b| a + b),
+        scale_w: pair(scales_w, f64::max).max(SMALLEST_POWER_W),
+    }
 }

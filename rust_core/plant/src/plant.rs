@@ -43,7 +43,7 @@ pub struct Disturbance {
 }
 
 /// What happened during a step.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct StepRecord {
     /// Mean flows.
     pub flows: Flows,
@@ -178,40 +178,53 @@ impl Plant {
 
     /// Steps the vehicle by one control period.
     pub fn step(&self, state: &mut State, command: &Command, disturbance: &Disturbance) -> StepRecord {
-        self.step_with(state, command, disturbance, |_, _| {})
+        let mut record = StepRecord::default();
+        self.step_into(state, command, disturbance, &mut record);
+        record
     }
 
-    /// [`Plant::step`] with a hook that sees, and may falsify, the flows inside the vehicle; tests of the energy
+    /// [`Plant::step`] that writes what happened to where it is kept.
+    pub fn step_into(
+        &self,
+        state: &mut State,
+        command: &Command,
+        disturbance: &Disturbance,
+        record: &mut StepRecord,
+    ) {
+        self.step_with(state, command, disturbance, record, |_, _| {});
+    }
+
+    /// [`Plant::step_into`] with a hook that sees, and may falsify, the flows inside the vehicle; tests of the energy
     /// ledger use it.
     #[doc(hidden)]
+    #[inline]
     pub fn step_with(
         &self,
         state: &mut State,
         command: &Command,
         disturbance: &Disturbance,
+        record: &mut StepRecord,
         mut tamper: impl FnMut(Stage, &mut Flows),
-    ) -> StepRecord {
+    ) {
         let demand = self.ranges.decode(command);
         let period = self.begin_period(state, demand, disturbance);
-        let mut record = self.substep(state, &period, disturbance, 0, &mut tamper);
-        let share = 1.0 / f64::from(self.substeps);
+        self.substep(state, &period, disturbance, 0, record, &mut tamper);
         if self.substeps > 1 {
+            let share = 1.0 / f64::from(self.substeps);
             let mut mean = Flows::default();
             mean.accumulate(&record.flows, share);
             let (mut voltage_v, mut current_a) =
                 (record.battery_voltage_v * share, record.battery_current_a * share);
             for part in 1..self.substeps {
-                let next = self.substep(state, &period, disturbance, part, &mut tamper);
-                mean.accumulate(&next.flows, share);
-                voltage_v += next.battery_voltage_v * share;
-                current_a += next.battery_current_a * share;
-                let worst = if next.ledger.relative() > record.ledger.relative() {
-                    next.ledger
-                } else {
-                    record.ledger
-                };
-                record =
-                    StepRecord { ledger: worst, loads_shed: next.loads_shed || record.loads_shed, ..next };
+                let before = (record.ledger, record.loads_shed);
+                self.substep(state, &period, disturbance, part, record, &mut tamper);
+                mean.accumulate(&record.flows, share);
+                voltage_v += record.battery_voltage_v * share;
+                current_a += record.battery_current_a * share;
+                if before.0.relative() >= record.ledger.relative() {
+                    record.ledger = before.0;
+                }
+                record.loads_shed |= before.1;
             }
             record.flows = mean;
             record.battery_voltage_v = voltage_v;
@@ -223,7 +236,6 @@ impl Plant {
         state.condenser_heat_flow_w = record.flows[Flow::Condenser];
         state.ptc_pid.applied(&self.gains.ptc, state.ptc_power_w);
         state.pressure_pid.applied(&self.gains.pressure, state.compressor_power_w);
-        record
     }
 
     /// One integration step: traction demand, refrigerant loop, thermal loads, regeneration and battery,
@@ -234,8 +246,9 @@ impl Plant {
         period: &Period,
         disturbance: &Disturbance,
         part: u32,
+        record: &mut StepRecord,
         tamper: &mut impl FnMut(Stage, &mut Flows),
-    ) -> StepRecord {
+    ) {
         let vehicle = &self.vehicle;
         let nodes = NODES;
         let step_s = CONTROL_PERIOD_S / f64::from(self.substeps);
@@ -243,7 +256,8 @@ impl Plant {
         let start_m_s = disturbance.start_speed_m_s + acceleration * step_s * f64::from(part);
         let end_m_s = start_m_s + acceleration * step_s;
         let speed_m_s = 0.5 * (start_m_s + end_m_s);
-        let mut flows = Flows::default();
+        let flows = &mut record.flows;
+        *flows = Flows::default();
 
         // Traction demand.
         let road = vehicle.body.road_load(start_m_s, end_m_s, step_s, period.air.density_kg_m3);
@@ -286,7 +300,7 @@ impl Plant {
             flows[Flow::TransmissionLoss] = driving.transmission_loss_w;
         }
         let without_heat_pump_k =
-            factorised.advance(&state.temperatures_k, &self.heat_sources(&flows, &conditions));
+            factorised.advance(&state.temperatures_k, &self.heat_sources(flows, &conditions));
         let hot_response = factorised.response(&self.assembly.condenser_sources(1.0, &conditions));
         let mut cold_source = NodeValues::default();
         cold_source[nodes.chiller_supply.index()] = 1.0;
@@ -335,17 +349,17 @@ impl Plant {
         flows[Flow::MotorLoss] = traction.motor_loss_w;
         flows[Flow::TransmissionLoss] = traction.transmission_loss_w;
         flows[Flow::FrictionBrake] = traction.friction_brake_power_w;
-        tamper(Stage::Loads, &mut flows);
-        let battery = draw(&circuit, &limits, &mut flows);
+        tamper(Stage::Loads, flows);
+        let battery = draw(&circuit, &limits, flows);
 
         // Thermal network.
-        tamper(Stage::Heat, &mut flows);
+        tamper(Stage::Heat, flows);
         let start_k = state.temperatures_k;
-        let end_k = factorised.advance(&start_k, &self.heat_sources(&flows, &conditions));
-        self.assembly.record_flows(&links, &conditions, &end_k, &mut flows);
+        let end_k = factorised.advance(&start_k, &self.heat_sources(flows, &conditions));
+        self.assembly.record_flows(&links, &conditions, &end_k, flows);
 
         // Ledger.
-        tamper(Stage::Ledger, &mut flows);
+        tamper(Stage::Ledger, flows);
         let stored = StoredEnergyChange {
             kinetic_j: vehicle.body.kinetic_energy_j(end_m_s) - vehicle.body.kinetic_energy_j(start_m_s),
             chemical_j: circuit.chemical_energy_gained_j(&battery.state),
@@ -353,23 +367,20 @@ impl Plant {
                 - self.battery.polarisation_energy_j(&state.battery),
             heat_j: self.assembly.network.heat_gained_j(&start_k, &end_k),
         };
-        let ledger = ledger::balance(&flows, &stored, step_s);
+        let ledger = ledger::balance(flows, &stored, step_s);
 
         state.temperatures_k = end_k;
         state.battery = battery.state;
         state.condensing_pressure_pa = refrigeration.condensing_pressure_pa;
-        StepRecord {
-            flows,
-            demanded_w: period.demand.compressor_power_w,
-            compressor_demand_w: period.compressor_demand_w,
-            refrigeration,
-            boundary,
-            battery_voltage_v: battery.voltage_v,
-            battery_current_a: battery.current_a,
-            power_limits: limits,
-            ledger,
-            loads_shed,
-        }
+        record.demanded_w = period.demand.compressor_power_w;
+        record.compressor_demand_w = period.compressor_demand_w;
+        record.refrigeration = refrigeration;
+        record.boundary = boundary;
+        record.battery_voltage_v = battery.voltage_v;
+        record.battery_current_a = battery.current_a;
+        record.power_limits = limits;
+        record.ledger = ledger;
+        record.loads_shed = loads_shed;
     }
 
     /// Fan of the front-end exchanger, on while that is connected [W].

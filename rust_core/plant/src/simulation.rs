@@ -175,9 +175,9 @@ impl Experiment {
         let nodes = &self.plant.assembly.nodes;
         let supplies_before_k =
             [nodes.htc_supply, nodes.chiller_supply].map(|node| run.state.temperatures_k[node.index()]);
-        let record = self.plant.step(&mut run.state, command, &disturbance);
+        let record = run.record.get_or_insert_default();
+        self.plant.step_into(&mut run.state, command, &disturbance, record);
         run.steps += 1;
-        let record = run.record.insert(record);
         run.summary.add(&self.plant, supplies_before_k, &run.state, record, &disturbance);
         if run.summary.energy_j(Flow::Unserved) > TOLERATED_UNSERVED_J {
             Some(EndReason::UnservedEnergy)

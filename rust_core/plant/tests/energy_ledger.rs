@@ -10,7 +10,7 @@ use hp_plant::config::Celsius;
 use hp_plant::config::library::{self, Kind};
 use hp_plant::config::scenario::InitialParameters;
 use hp_plant::flows::{Flow, Flows};
-use hp_plant::plant::{Disturbance, Plant, Stage};
+use hp_plant::plant::{Disturbance, Plant, Stage, StepRecord};
 use hp_plant::simulation::Experiment;
 use hp_plant::state::State;
 use proptest::prelude::*;
@@ -205,9 +205,11 @@ impl Moment {
     }
 
     /// What happens in the next second, one flow perhaps falsified.
-    fn step(&self, tamper: impl FnMut(Stage, &mut Flows)) -> hp_plant::plant::StepRecord {
+    fn step(&self, tamper: impl FnMut(Stage, &mut Flows)) -> StepRecord {
         let mut state = self.state;
-        self.experiment.plant.step_with(&mut state, &self.command, &self.disturbance, tamper)
+        let mut record = StepRecord::default();
+        self.experiment.plant.step_with(&mut state, &self.command, &self.disturbance, &mut record, tamper);
+        record
     }
 }
 

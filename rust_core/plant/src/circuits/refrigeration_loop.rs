@@ -23,7 +23,7 @@ const LARGEST_TREND: f64 = 1.0;
 const SMALLEST_JUMP: f64 = 0.03;
 
 /// What the coolants offer during a step.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct LoopBoundary {
     /// Coolant entering the condenser [K].
     pub hot_return_k: f64,
@@ -62,9 +62,10 @@ pub struct CompressorAllowance {
 }
 
 /// How a solve ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum LoopStatus {
     /// At rest; `limited_by` tells why.
+    #[default]
     Off,
     /// At rest: the pressure ratio would stay below what the machine can work with.
     NoLift,
@@ -85,7 +86,7 @@ pub enum LoopStatus {
 }
 
 /// The loop during one step.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct LoopResult {
     /// How the solve ended.
     pub status: LoopStatus,

@@ -30,9 +30,10 @@ const MAX_SPEED_FACTOR: f64 = 3.0;
 const SCALE_SHARE: f64 = 0.01;
 
 /// What holds the compressor back.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Limit {
     /// The power that is demanded or allowed.
+    #[default]
     Power,
     /// The highest speed, or what the ramp lets it be.
     Speed,
@@ -60,7 +61,7 @@ const CAPS: [Limit; 6] =
     [Limit::Power, Limit::Speed, Limit::Pressure, Limit::Suction, Limit::HotCoolant, Limit::ColdCoolant];
 
 /// Coolant supply temperature at the end of the step as a function of the exchanger's heat flow.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct SupplyLimit {
     /// Supply temperature at the end of the step without any heat flow [K].
     pub base_k: f64,

@@ -26,7 +26,7 @@ pub struct BatteryState {
 }
 
 /// Limits on the terminal power during a step.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct PowerLimits {
     /// Largest charging power, as a positive number [W].
     pub charge_w: f64,
@@ -57,6 +57,7 @@ pub struct Battery {
     cells_in_series: f64,
     strings: f64,
     cell_capacity_c: f64,
+    per_cell_capacity_1_c: f64,
     minimum_string_voltage_v: f64,
     maximum_string_voltage_v: f64,
     charge_limit: RateLimitParameters,
@@ -117,6 +118,7 @@ impl Battery {
             cells_in_series,
             strings: f64::from(parameters.strings_in_parallel),
             cell_capacity_c: parameters.cell_capacity_ah * 3600.0,
+            per_cell_capacity_1_c: (parameters.cell_capacity_ah * 3600.0).recip(),
             minimum_string_voltage_v: parameters.minimum_cell_voltage_v * cells_in_series,
             maximum_string_voltage_v: parameters.maximum_cell_voltage_v * cells_in_series,
             charge_limit: parameters.charge_limit.clone(),
@@ -141,15 +143,15 @@ impl Battery {
     /// State of charge by charge [-]: what the open-circuit voltage depends on.
     #[must_use]
     pub fn state_of_charge(&self, state: &BatteryState) -> f64 {
-        1.0 - state.charge_drawn_c / self.cell_capacity_c
+        1.0 - state.charge_drawn_c * self.per_cell_capacity_1_c
     }
 
     /// State of charge of equation (6): charge drawn since the start over the usable capacity [-].
     #[must_use]
     pub fn usable_state_of_charge(&self, state: &BatteryState, temperature_k: f64) -> f64 {
-        let initial = 1.0 - state.initial_charge_drawn_c / self.cell_capacity_c;
-        let drawn = state.charge_drawn_c - state.initial_charge_drawn_c;
-        initial - drawn / (self.cell_capacity_c * self.usable_capacity.at(temperature_k))
+        let initial = 1.0 - state.initial_charge_drawn_c * self.per_cell_capacity_1_c;
+        let drawn = (state.charge_drawn_c - state.initial_charge_drawn_c) * self.per_cell_capacity_1_c;
+        initial - drawn / self.usable_capacity.at(temperature_k)
     }
 
     /// Energy stored in all RC pairs [J].
@@ -168,21 +170,27 @@ impl Battery {
         let root_capacitance = (time_constant_s / (r1 * self.cells_in_series)).sqrt();
         let decay = elementary::exp(-step_s / time_constant_s);
         let segment = self.open_circuit_voltage.segment(soc);
+        let open_circuit_v = segment.at(soc) * self.cells_in_series;
+        let polarisation_v = state.polarisation / root_capacitance;
+        let mean_decay = time_constant_s / step_s * (1.0 - decay);
+        let discharge_ohm = 0.5 * segment.slope * step_s * self.per_cell_capacity_1_c * self.cells_in_series;
         CircuitStep {
             battery: self,
             state: *state,
+            state_of_charge: soc,
             temperature_k,
             step_s,
             segment,
-            open_circuit_v: segment.at(soc) * self.cells_in_series,
-            // Fall of the mean open-circuit voltage per ampere.
-            discharge_ohm: 0.5 * segment.slope * step_s / self.cell_capacity_c * self.cells_in_series,
+            open_circuit_v,
+            discharge_ohm,
             series_ohm,
             polarisation_ohm,
             root_capacitance,
-            polarisation_v: state.polarisation / root_capacitance,
+            polarisation_v,
             decay,
-            mean_decay: time_constant_s / step_s * (1.0 - decay),
+            mean_decay,
+            source_v: open_circuit_v - polarisation_v * mean_decay,
+            source_ohm: series_ohm + polarisation_ohm * (1.0 - mean_decay) + discharge_ohm,
         }
     }
 }
@@ -192,11 +200,13 @@ impl Battery {
 pub struct CircuitStep<'a> {
     battery: &'a Battery,
     state: BatteryState,
+    state_of_charge: f64,
     temperature_k: f64,
     step_s: f64,
     /// Piece of the open-circuit voltage that the step begins on.
     segment: &'a Segment,
     open_circuit_v: f64,
+    /// Fall of the mean open-circuit voltage per ampere, as long as the step stays on that piece.
     discharge_ohm: f64,
     series_ohm: f64,
     polarisation_ohm: f64,
@@ -204,30 +214,26 @@ pub struct CircuitStep<'a> {
     polarisation_v: f64,
     decay: f64,
     mean_decay: f64,
+    /// Voltage and resistance of the equivalent source, `P = I (U - R I)`.
+    source_v: f64,
+    source_ohm: f64,
 }
 
 impl CircuitStep<'_> {
-    /// Source voltage and resistance of the equivalent `P = I (U - R I)`.
-    fn source(&self) -> (f64, f64) {
-        let voltage = self.open_circuit_v - self.polarisation_v * self.mean_decay;
-        let resistance =
-            self.series_ohm + self.polarisation_ohm * (1.0 - self.mean_decay) + self.discharge_ohm;
-        (voltage, resistance)
-    }
-
     /// What the terminals can take and give during this step: rate, voltage and peak power limits.
     #[must_use]
     pub fn power_limits(&self) -> PowerLimits {
         let battery = self.battery;
-        let (voltage, resistance) = self.source();
+        let (voltage, resistance) = (self.source_v, self.source_ohm);
+        let per_ohm = resistance.recip();
         let rate_a = |limit: &RateLimitParameters| {
             limit.rate_per_h(self.temperature_k) * battery.cell_capacity_c / 3600.0
         };
         let discharge_a = rate_a(&battery.discharge_limit)
-            .min((voltage - battery.minimum_string_voltage_v) / resistance)
-            .clamp(0.0, 0.5 * voltage / resistance);
+            .min((voltage - battery.minimum_string_voltage_v) * per_ohm)
+            .clamp(0.0, 0.5 * voltage * per_ohm);
         let charge_a = rate_a(&battery.charge_limit)
-            .min((battery.maximum_string_voltage_v - voltage) / resistance)
+            .min((battery.maximum_string_voltage_v - voltage) * per_ohm)
             // A full battery accepts no charge.
             .min(self.state.charge_drawn_c / self.step_s)
             .max(0.0);
@@ -242,7 +248,7 @@ impl CircuitStep<'_> {
     pub fn draw(&self, terminal_power_w: f64) -> BatteryStep {
         let battery = self.battery;
         let power_w = terminal_power_w / battery.strings;
-        let (source_v, resistance) = self.source();
+        let (source_v, resistance) = (self.source_v, self.source_ohm);
         let mut correction_v = 0.0;
         let mut current_a = 0.0;
         let mut mean_open_circuit_v = self.open_circuit_v;
@@ -264,25 +270,20 @@ impl CircuitStep<'_> {
     /// Mean open-circuit voltage of a string while a constant current flows [V].
     fn mean_open_circuit_v(&self, current_a: f64) -> f64 {
         let battery = self.battery;
-        let start = battery.state_of_charge(&self.state);
-        let change = -current_a * self.step_s / battery.cell_capacity_c;
-        if change.abs() < 1e-9 {
+        let change = -current_a * self.step_s * battery.per_cell_capacity_1_c;
+        let end = self.state_of_charge + change;
+        if self.segment.holds(end) || change.abs() < 1e-9 {
             return self.open_circuit_v - self.discharge_ohm * current_a;
         }
-        let end = start + change;
-        let mean = if self.segment.holds(end) {
-            0.5 * (self.segment.at(start) + self.segment.at(end))
-        } else {
-            (self.piece(end).integral_to(end) - self.segment.integral_to(start)) / change
-        };
-        mean * battery.cells_in_series
+        let rise = self.piece(end).integral_to(end) - self.segment.integral_to(self.state_of_charge);
+        rise / change * battery.cells_in_series
     }
 
     /// Chemical energy that all cells gained up to a later state [J]: the open-circuit voltage summed over the charge.
     #[must_use]
     pub fn chemical_energy_gained_j(&self, later: &BatteryState) -> f64 {
         let battery = self.battery;
-        let (start, end) = (battery.state_of_charge(&self.state), battery.state_of_charge(later));
+        let (start, end) = (self.state_of_charge, battery.state_of_charge(later));
         let rise_v = self.piece(end).integral_to(end) - self.segment.integral_to(start);
         rise_v * battery.cell_capacity_c * battery.cells_in_series * battery.strings
     }
