@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from hp_gym.settings import Action, Name
 
 _PARTS = tuple(_core.reward_parts())
+_PART_KEYS = tuple((name, f"_{name}") for name in _PARTS)
 
 
 class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
@@ -148,12 +149,13 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         """
         observations, rewards, terminated, truncated, parts, finished, reset, told = self._core.step(actions)
         infos: dict[str, Any] = {}
-        stepped = np.ones(self.num_envs, dtype=np.bool_)
-        stepped[reset] = False
         if len(reset) < self.num_envs:
-            for name, values in zip(_PARTS, parts, strict=True):
-                infos[name] = values
-                infos[f"_{name}"] = stepped.copy()
+            stepped = np.ones((len(_PARTS), self.num_envs), dtype=np.bool_)
+            if reset:
+                stepped[:, reset] = False
+            for row, (name, present) in enumerate(_PART_KEYS):
+                infos[name] = parts[row]
+                infos[present] = stepped[row]
         for index, info, last in finished:
             if last is not None:
                 infos = self._add_info(infos, {"final_obs": last, "final_info": info}, index)

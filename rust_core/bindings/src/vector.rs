@@ -75,7 +75,7 @@ impl Vector {
 
     fn require_ready(&self, py: Python<'_>) -> PyResult<()> {
         self.require_open(py)?;
-        if !self.inner.episodes().iter().all(Episode::begun) {
+        if !self.inner.all_begun() {
             return Err(gymnasium_error(py, "ResetNeeded", "call reset() first"));
         }
         Ok(())

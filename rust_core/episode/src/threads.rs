@@ -6,8 +6,14 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Entries that a thread takes at a time: some microseconds of work, so that no thread waits long for another.
+/// Entries that are worth a thread of their own: some microseconds of work.
 const BATCH: usize = 16;
+
+/// Entries that a thread takes at a time: this part of what is left of a share, so that no thread waits long for another
+/// at the end, within these bounds.
+const PART_OF_SHARE: usize = 4;
+const FEWEST: usize = 2;
+const MOST: usize = 64;
 
 /// So long threads look for more work, or wait for the others' last batches, before they sleep: waking one takes tens of
 /// microseconds, as long as a tight loop of steps spends between two of them.
@@ -66,7 +72,7 @@ impl Threads {
         self.count
     }
 
-    /// Works through all entries, batch by batch, in no fixed order.
+    /// Works through all entries, part by part, in no fixed order.
     ///
     /// Each thread begins with a share of its own, the same every time, so that what it works on stays in its
     /// core's cache. Then it takes what others have left: one that the machine holds up holds up nobody else.
@@ -82,7 +88,8 @@ impl Threads {
             (0..count).map(|thread| Mutex::new(all.take(bound(thread + 1) - bound(thread)))).collect();
         let next = |share: &Mutex<S>| {
             let mut share = share.lock().unwrap_or_else(PoisonError::into_inner);
-            (share.count() > 0).then(|| share.take(BATCH))
+            let left = share.count();
+            (left > 0).then(|| share.take((left / PART_OF_SHARE).clamp(FEWEST, MOST)))
         };
         let toil = |thread: usize| {
             for place in 0..count {

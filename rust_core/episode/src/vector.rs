@@ -89,6 +89,8 @@ pub struct Vector {
     episodes: Vec<Episode>,
     elapsed: Vec<u64>,
     over: Vec<bool>,
+    /// Whether a trip was begun: beside the environments, so that to ask all does not fetch them from memory.
+    begun: Vec<bool>,
     autoreset: Autoreset,
     step_limit: Option<u64>,
     threads: Threads,
@@ -196,6 +198,7 @@ impl Vector {
             episodes,
             elapsed: vec![0; count],
             over: vec![false; count],
+            begun: vec![false; count],
             autoreset,
             step_limit,
             threads: Threads::new(threads),
@@ -208,7 +211,7 @@ impl Vector {
         &self.episodes
     }
 
-    /// The environments.
+    /// The environments; to be reset and restored by the functions below, which note what has begun.
     pub fn episodes_mut(&mut self) -> &mut [Episode] {
         &mut self.episodes
     }
@@ -225,6 +228,12 @@ impl Vector {
         &self.over
     }
 
+    /// Whether every environment has begun a trip.
+    #[must_use]
+    pub fn all_begun(&self) -> bool {
+        !self.begun.contains(&false)
+    }
+
     /// Resets one environment.
     ///
     /// # Errors
@@ -237,6 +246,7 @@ impl Vector {
         episode.reset(once)?;
         self.elapsed[index] = 0;
         self.over[index] = false;
+        self.begun[index] = true;
         Ok(())
     }
 
@@ -249,6 +259,7 @@ impl Vector {
         self.episodes = from.iter().map(|&index| self.episodes[index].clone()).collect();
         self.elapsed = from.iter().map(|&index| self.elapsed[index]).collect();
         self.over = from.iter().map(|&index| self.over[index]).collect();
+        self.begun = from.iter().map(|&index| self.begun[index]).collect();
     }
 
     /// State of one environment with its clock.
@@ -271,6 +282,7 @@ impl Vector {
         self.episodes[index].restore(rest)?;
         self.elapsed[index] = clock[..8].iter().rev().fold(0, |sum, &byte| (sum << 8) | u64::from(byte));
         self.over[index] = clock[8] != 0;
+        self.begun[index] = self.episodes[index].begun();
         Ok(())
     }
 
