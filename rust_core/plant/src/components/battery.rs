@@ -162,6 +162,7 @@ impl Battery {
 
     /// The circuit as it is during one step.
     #[must_use]
+    #[inline(always)]
     pub fn during(&self, state: &BatteryState, temperature_k: f64, step_s: f64) -> CircuitStep<'_> {
         let soc = self.state_of_charge(state);
         let [r0, r1, time_constant_s] = self.circuit.at(temperature_k, soc);
@@ -222,6 +223,7 @@ pub struct CircuitStep<'a> {
 impl CircuitStep<'_> {
     /// What the terminals can take and give during this step: rate, voltage and peak power limits.
     #[must_use]
+    #[inline(always)]
     pub fn power_limits(&self) -> PowerLimits {
         let battery = self.battery;
         let (voltage, resistance) = (self.source_v, self.source_ohm);
@@ -245,6 +247,7 @@ impl CircuitStep<'_> {
 
     /// Draws a terminal power (negative: charges). The power must lie within [`Self::power_limits`].
     #[must_use]
+    #[inline(always)]
     pub fn draw(&self, terminal_power_w: f64) -> BatteryStep {
         let battery = self.battery;
         let power_w = terminal_power_w / battery.strings;
@@ -268,6 +271,7 @@ impl CircuitStep<'_> {
     }
 
     /// Mean open-circuit voltage of a string while a constant current flows [V].
+    #[inline(always)]
     fn mean_open_circuit_v(&self, current_a: f64) -> f64 {
         let battery = self.battery;
         let change = -current_a * self.step_s * battery.per_cell_capacity_1_c;
@@ -281,6 +285,7 @@ impl CircuitStep<'_> {
 
     /// Chemical energy that all cells gained up to a later state [J]: the open-circuit voltage summed over the charge.
     #[must_use]
+    #[inline(always)]
     pub fn chemical_energy_gained_j(&self, later: &BatteryState) -> f64 {
         let battery = self.battery;
         let (start, end) = (self.state_of_charge, battery.state_of_charge(later));
@@ -298,6 +303,7 @@ impl CircuitStep<'_> {
         }
     }
 
+    #[inline(always)]
     fn finish(&self, current_a: f64, mean_open_circuit_v: f64) -> BatteryStep {
         let strings = self.battery.strings;
         let steady_v = self.polarisation_ohm * current_a;
