@@ -172,7 +172,7 @@ impl ActionTable {
     ) -> bool {
         let Some(branch) = Branch::of(member, member.options()[option]) else { return true };
         let at = |recirculation: f64| {
-            let temperatures = plant.branch_temperatures(state, recirculation, disturbance.ambient_k);
+            let temperatures = plant.branch_temperatures(state, recirculation, disturbance.air.temperature_k);
             branches::allowed(&plant.vehicle, &temperatures, &state.connected)[branch as usize]
         };
         if member != Member::Cabin {

@@ -6,7 +6,6 @@
 use hp_plant::components::battery::BatteryState;
 use hp_plant::components::powertrain::Powertrain;
 use hp_plant::config::Celsius;
-use hp_plant::media::air::{self, AirProperties};
 use hp_plant::plant::{CONTROL_PERIOD_S, Disturbance, Plant};
 use hp_plant::simulation::Experiment;
 use serde::{Deserialize, Serialize};
@@ -23,7 +22,6 @@ pub struct ReferenceTrip {
 /// What does not change during a reference trip.
 #[derive(Debug, Clone)]
 pub struct ReferenceConditions {
-    air: AirProperties,
     base_load_w: f64,
     /// Spin loss of the transmission at 1 m/s, proportional to speed.
     spin_loss_w_s_m: f64,
@@ -38,7 +36,6 @@ impl ReferenceConditions {
             circuit.pump.power_w(circuit.pump.minimum_flow_kg_s)
         };
         Self {
-            air: air::at_temperature(experiment.climate.ambient_temperature_degc.kelvin()),
             spin_loss_w_s_m: vehicle.transmission.spin_loss_w(REFERENCE_TEMPERATURE.kelvin(), 1.0),
             base_load_w: vehicle.controls.auxiliary_power_w
                 + pump(&vehicle.htc.circuit)
@@ -66,7 +63,8 @@ impl ReferenceTrip {
         let (start_m_s, end_m_s) = (disturbance.start_speed_m_s, disturbance.end_speed_m_s);
         let speed_m_s = 0.5 * (start_m_s + end_m_s);
         let temperature_k = REFERENCE_TEMPERATURE.kelvin();
-        let road = vehicle.body.road_load(start_m_s, end_m_s, CONTROL_PERIOD_S, conditions.air.density_kg_m3);
+        let road =
+            vehicle.body.road_load(start_m_s, end_m_s, CONTROL_PERIOD_S, disturbance.air.density_kg_m3);
         let wheel_w = road.wheel_power_w();
         let powertrain = Powertrain {
             motor: &vehicle.motor,

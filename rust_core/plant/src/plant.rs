@@ -18,7 +18,7 @@ use crate::control::vehicle_controls::{ControlGains, Period};
 use crate::error::PlantResult;
 use crate::flows::{Flow, Flows};
 use crate::ledger::{self, LedgerEntry, StoredEnergyChange};
-use crate::media::air::AirTable;
+use crate::media::air::AirProperties;
 use crate::media::refrigerant::RefrigerantTable;
 use crate::numerics::thermal_network::{MAXIMUM_NODES, NodeValues};
 use crate::state::State;
@@ -34,8 +34,8 @@ pub struct Disturbance {
     pub start_speed_m_s: f64,
     /// Vehicle speed at the end [m/s].
     pub end_speed_m_s: f64,
-    /// Ambient temperature [K].
-    pub ambient_k: f64,
+    /// Ambient air.
+    pub air: AirProperties,
     /// Solar heat into the cabin [W].
     pub solar_gain_w: f64,
     /// People in the cabin.
@@ -83,7 +83,6 @@ pub struct Plant {
     pub refrigeration: RefrigerationCycle,
     /// Refrigerant properties.
     pub refrigerant: RefrigerantTable,
-    pub(crate) air: AirTable,
     pub(crate) branches: BranchTable,
     pub(crate) gains: ControlGains,
     substeps: u32,
@@ -115,7 +114,6 @@ impl Plant {
             refrigeration: RefrigerationCycle::new(vehicle.refrigeration.clone(), table.clone())
                 .map_err(|violation| violation.within("refrigeration").in_file("vehicle"))?,
             refrigerant: table,
-            air: AirTable::default(),
             branches: BranchTable::of(&vehicle),
             gains: ControlGains::of(&vehicle),
             vehicle,
@@ -260,7 +258,7 @@ impl Plant {
         *flows = Flows::default();
 
         // Traction demand.
-        let road = vehicle.body.road_load(start_m_s, end_m_s, step_s, period.air.density_kg_m3);
+        let road = vehicle.body.road_load(start_m_s, end_m_s, step_s, disturbance.air.density_kg_m3);
         let wheel_w = road.wheel_power_w();
         let oil_k = state.temperatures_k[nodes.transmission.index()];
         let powertrain = Powertrain {
@@ -403,7 +401,7 @@ impl Plant {
         let lowest_k = state.temperatures_k[nodes.chiller_supply.index()] + RECOVERY_APPROACH_K;
         let recovers = period.branches_w_k[Branch::CabinHtc as usize] > 0.0
             && cabin_k > lowest_k
-            && cabin_k > disturbance.ambient_k;
+            && cabin_k > disturbance.air.temperature_k;
         let recovery_w_k = self.vehicle.cabin.exhaust_recovery_share * period.ventilation.fresh_rate_w_k;
         LinkConditions {
             htc_rate_w_k: period.htc_rate_w_k,
@@ -411,14 +409,14 @@ impl Plant {
             branches_w_k: period.branches_w_k,
             ventilation: period.ventilation,
             recovery_w_k: if recovers { recovery_w_k } else { 0.0 },
-            recovery_meets_chiller: lowest_k > disturbance.ambient_k,
+            recovery_meets_chiller: lowest_k > disturbance.air.temperature_k,
             speed_m_s,
             battery_ambient_w_k: self
                 .vehicle
                 .battery
                 .plate
-                .conductance_to_ambient_w_k(speed_m_s, &period.air),
-            ambient_k: disturbance.ambient_k,
+                .conductance_to_ambient_w_k(speed_m_s, &disturbance.air),
+            ambient_k: disturbance.air.temperature_k,
         }
     }
 

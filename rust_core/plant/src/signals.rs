@@ -103,7 +103,7 @@ const STATES: &[Signal] = signals! {
     "time_s", "s", "time since the start", function(|v| v.state.time_s);
     "speed_m_s", "m/s", "vehicle speed at the end of the step",
         function(|v| if v.record.is_some() { v.disturbance.end_speed_m_s } else { v.disturbance.start_speed_m_s });
-    "ambient_temperature_degc", "degC", "ambient air", function(|v| v.disturbance.ambient_k - ZERO_CELSIUS_K);
+    "ambient_temperature_degc", "degC", "ambient air", function(|v| v.disturbance.air.temperature_k - ZERO_CELSIUS_K);
     "cabin_temperature_degc", "degC", "cabin, large air volume", temperature(NODES.cabin);
     "exhaust_temperature_degc", "degC", "cabin, small exhaust volume", temperature(NODES.exhaust);
     "soft_furnishings_temperature_degc", "degC", "seats, carpet", temperature(NODES.soft);

@@ -9,6 +9,7 @@ use crate::control::hpcu::{Hpcu, HpcuState};
 use crate::drive_cycle::DriveCycle;
 use crate::error::{PlantError, PlantResult};
 use crate::flows::Flow;
+use crate::media::air::{self, AirProperties};
 use crate::plant::{Disturbance, Plant, StepRecord};
 use crate::signals::{self, View};
 use crate::state::State;
@@ -23,6 +24,8 @@ pub struct Experiment {
     pub scenario: Arc<ScenarioParameters>,
     /// Climate of this run.
     pub climate: ClimateParameters,
+    /// Its air.
+    pub air: AirProperties,
     /// Initial state of this run.
     pub initial: InitialParameters,
     /// Vehicle.
@@ -122,6 +125,7 @@ impl Experiment {
             controller: controller.into(),
             hpcu: Arc::new(Hpcu::of(&rules, &scenario.strategy, scenario.climate.ambient_temperature_degc)),
             rules,
+            air: air::at_temperature(scenario.climate.ambient_temperature_degc.kelvin()),
             climate: scenario.climate.clone(),
             initial: scenario.initial.clone(),
             scenario: Arc::new(scenario),
@@ -150,7 +154,7 @@ impl Experiment {
         Disturbance {
             start_speed_m_s: at(step),
             end_speed_m_s: at(step + 1),
-            ambient_k: self.climate.ambient_temperature_degc.kelvin(),
+            air: self.air,
             solar_gain_w: self.climate.solar_gain_w,
             occupants: f64::from(self.climate.occupants),
         }

@@ -10,6 +10,7 @@ use hp_plant::config::Celsius;
 use hp_plant::config::library::{self, Kind};
 use hp_plant::config::scenario::InitialParameters;
 use hp_plant::flows::{Flow, Flows};
+use hp_plant::media::air;
 use hp_plant::plant::{Disturbance, Plant, Stage, StepRecord};
 use hp_plant::simulation::Experiment;
 use hp_plant::state::State;
@@ -105,7 +106,7 @@ fn drive(plant: &Plant, scenario: &RandomScenario) -> Vec<LoopStatus> {
         let disturbance = Disturbance {
             start_speed_m_s: at(step),
             end_speed_m_s: end_m_s,
-            ambient_k: Celsius(scenario.ambient_degc).kelvin(),
+            air: air::at_temperature(Celsius(scenario.ambient_degc).kelvin()),
             solar_gain_w: scenario.solar_gain_w,
             occupants: scenario.occupants,
         };

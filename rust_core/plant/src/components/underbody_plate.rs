@@ -13,7 +13,7 @@ const TRANSITION_REYNOLDS: f64 = 5e5;
 /// where that turns negative, the laminar mean `0.664 Re^0.5 Pr^(1/3) k / L`. They meet at Re = 5e5.
 #[must_use]
 pub fn convection_coefficient_w_m2_k(speed_m_s: f64, length_m: f64, air: &AirProperties) -> f64 {
-    let reynolds = air.density_kg_m3 * speed_m_s * length_m / air.viscosity_pa_s;
+    let reynolds = speed_m_s * length_m * air.per_kinematic_viscosity_s_m2;
     let scale = air.prandtl_cube_root * air.conductivity_w_m_k / length_m;
     if reynolds < TRANSITION_REYNOLDS {
         0.664 * reynolds.sqrt() * scale
@@ -51,7 +51,7 @@ mod tests {
     #[test]
     fn laminar_and_mixed_laws_meet_at_transition_and_never_turn_negative() {
         let air = air::at_temperature(273.15);
-        let transition = TRANSITION_REYNOLDS * air.viscosity_pa_s / (air.density_kg_m3 * 4.0);
+        let transition = TRANSITION_REYNOLDS / (air.per_kinematic_viscosity_s_m2 * 4.0);
         let below = convection_coefficient_w_m2_k(transition * 0.999_999, 4.0, &air);
         let above = convection_coefficient_w_m2_k(transition * 1.000_001, 4.0, &air);
         assert!((below / above - 1.0).abs() < 1e-3);

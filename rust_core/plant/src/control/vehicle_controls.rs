@@ -7,7 +7,6 @@ use crate::command::Demand;
 use crate::components::cabin::Ventilation;
 use crate::components::pump;
 use crate::config::vehicle::VehicleParameters;
-use crate::media::air::AirProperties;
 use crate::numerics::thermal_network::Node;
 use crate::plant::{CONTROL_PERIOD_S, Disturbance, Plant};
 use crate::state::State;
@@ -25,7 +24,6 @@ pub(crate) struct Period {
     pub pumps_w: [f64; 2],
     pub ptc_demand_w: f64,
     pub compressor_demand_w: f64,
-    pub air: AirProperties,
 }
 
 /// What the controls need of gains and time constants, worked out for the control period.
@@ -83,7 +81,8 @@ impl Plant {
         let speed_m_s = 0.5 * (disturbance.start_speed_m_s + disturbance.end_speed_m_s);
         let ventilation =
             vehicle.cabin.ventilation(demand.blower_level, demand.recirculation, disturbance.occupants);
-        let temperatures = self.branch_temperatures(state, ventilation.recirculation, disturbance.ambient_k);
+        let temperatures =
+            self.branch_temperatures(state, ventilation.recirculation, disturbance.air.temperature_k);
         state.connected = branches::grant(vehicle, &demand.connections, &temperatures, &state.connected);
         for (pump, state, demand_kg_s) in [
             (&vehicle.htc.circuit.pump, &mut state.htc_pump, demand.htc_flow_kg_s),
@@ -132,7 +131,6 @@ impl Plant {
             ],
             ptc_demand_w: self.ptc_demand_w(state, &demand),
             compressor_demand_w: self.compressor_demand_w(state, &demand),
-            air: self.air.at_temperature(disturbance.ambient_k),
         }
     }
 
