@@ -25,6 +25,8 @@ pub struct RefrigerationCycle {
     /// Highest discharge temperature [K].
     pub(super) highest_discharge_k: f64,
     displacement_m3: f64,
+    /// Electrical power per shaft power [-].
+    electric_per_shaft: f64,
 }
 
 /// Coolants as the cycle meets them.
@@ -35,6 +37,9 @@ pub(super) struct CoolantSides {
     /// Duty per distance between coolant inlet and saturation [W/K].
     pub hot_conductance_w_k: f64,
     pub cold_conductance_w_k: f64,
+    /// Their reciprocals [K/W].
+    hot_resistance_k_w: f64,
+    cold_resistance_k_w: f64,
 }
 
 /// The cycle at one pair of saturation temperatures and one speed.
@@ -95,6 +100,7 @@ impl RefrigerationCycle {
             lowest_evaporating_k: table.saturation_temperature_k(low_pa),
             highest_discharge_k: Celsius(compressor.maximum_discharge_temperature_degc).kelvin(),
             displacement_m3: compressor.displacement_m3(),
+            electric_per_shaft: compressor.electrical_efficiency.recip(),
             parameters,
             table,
         })
@@ -113,11 +119,15 @@ impl RefrigerationCycle {
     }
 
     pub(super) fn coolant_sides(&self, hot: (f64, f64), cold: (f64, f64)) -> CoolantSides {
+        let hot_conductance_w_k = inlet_conductance_w_k(hot.1, self.parameters.condenser_ua_w_k);
+        let cold_conductance_w_k = inlet_conductance_w_k(cold.1, self.parameters.evaporator_ua_w_k);
         CoolantSides {
             hot_inlet_k: hot.0,
             cold_inlet_k: cold.0,
-            hot_conductance_w_k: inlet_conductance_w_k(hot.1, self.parameters.condenser_ua_w_k),
-            cold_conductance_w_k: inlet_conductance_w_k(cold.1, self.parameters.evaporator_ua_w_k),
+            hot_conductance_w_k,
+            cold_conductance_w_k,
+            hot_resistance_k_w: hot_conductance_w_k.recip(),
+            cold_resistance_k_w: cold_conductance_w_k.recip(),
         }
     }
 
@@ -160,10 +170,9 @@ impl RefrigerationCycle {
             isobar,
             evaporator_w,
             condenser_w,
-            electric_w: compression_w / parameters.compressor.electrical_efficiency,
-            cold_residual_k: -(evaporating_k - sides.cold_inlet_k)
-                - evaporator_w / sides.cold_conductance_w_k,
-            hot_residual_k: condensing_k - sides.hot_inlet_k - condenser_w / sides.hot_conductance_w_k,
+            electric_w: compression_w * self.electric_per_shaft,
+            cold_residual_k: -(evaporating_k - sides.cold_inlet_k) - evaporator_w * sides.cold_resistance_k_w,
+            hot_residual_k: condensing_k - sides.hot_inlet_k - condenser_w * sides.hot_resistance_k_w,
         }
     }
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::refrigeration_cycle::RefrigerationCycle;
 pub use super::refrigeration_solver::{Limit, SupplyLimit, WarmStart};
-use super::refrigeration_solver::{Running, Solver};
+use super::refrigeration_solver::{Running, Scales, Solver};
 use crate::components::compressor::CompressorState;
 use crate::components::refrigerant_exchanger::{CondenserStreams, EvaporatorStreams};
 
@@ -287,13 +287,15 @@ impl RefrigerationCycle {
         if !(flowing && finite) {
             return self.at_rest(boundary, LoopStatus::Off, Limit::CoolantFlow);
         }
+        let speed_limit_rev_s = demand.speed_limit_rev_s.min(parameters.maximum_speed_rev_s);
         let mut solver = Solver {
             cycle: self,
             sides,
             hot_supply: boundary.hot_supply,
             cold_supply: boundary.cold_supply,
             power_limit_w,
-            speed_limit_rev_s: demand.speed_limit_rev_s.min(parameters.maximum_speed_rev_s),
+            speed_limit_rev_s,
+            scales: Scales::of(power_limit_w, speed_limit_rev_s, parameters.minimum_speed_rev_s),
             hold: demand.hold_minimum_speed,
             iterations: Cell::new(0),
             bracketed: false,

@@ -82,6 +82,25 @@ pub struct WarmStart {
     pub speed_rev_s: f64,
 }
 
+/// Reciprocals of [`SCALE_SHARE`] of the limits, worked out once a problem.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scales {
+    per_power_w: f64,
+    per_speed_rev_s: f64,
+    per_minimum_speed_rev_s: f64,
+}
+
+impl Scales {
+    pub fn of(power_limit_w: f64, speed_limit_rev_s: f64, minimum_speed_rev_s: f64) -> Self {
+        let per = |limit: f64| (SCALE_SHARE * limit).recip();
+        Self {
+            per_power_w: per(power_limit_w.max(1.0)),
+            per_speed_rev_s: per(speed_limit_rev_s),
+            per_minimum_speed_rev_s: per(minimum_speed_rev_s),
+        }
+    }
+}
+
 /// One problem.
 pub(super) struct Solver<'a> {
     pub cycle: &'a RefrigerationCycle,
@@ -90,6 +109,8 @@ pub(super) struct Solver<'a> {
     pub cold_supply: SupplyLimit,
     pub power_limit_w: f64,
     pub speed_limit_rev_s: f64,
+    /// What makes margins of power, speed and minimum speed comparable with kelvin.
+    pub scales: Scales,
     /// Run at minimum speed although power allows less.
     pub hold: bool,
     pub iterations: Cell<u32>,
@@ -127,14 +148,12 @@ impl Solver<'_> {
     /// Room left below a limit in its scaled unit; negative where it is exceeded.
     fn margin<T: Real>(&self, limit: Limit, point: &CyclePoint<T>) -> T {
         match limit {
-            Limit::Power => {
-                (-point.electric_w + self.power_limit_w) / (SCALE_SHARE * self.power_limit_w.max(1.0))
-            }
+            Limit::Power => (-point.electric_w + self.power_limit_w) * self.scales.per_power_w,
             Limit::Speed | Limit::CoolantFlow => {
-                (-point.speed_rev_s + self.speed_limit_rev_s) / (SCALE_SHARE * self.speed_limit_rev_s)
+                (-point.speed_rev_s + self.speed_limit_rev_s) * self.scales.per_speed_rev_s
             }
             Limit::MinimumSpeed => {
-                (-point.speed_rev_s + self.minimum_speed()) / (SCALE_SHARE * self.minimum_speed())
+                (-point.speed_rev_s + self.minimum_speed()) * self.scales.per_minimum_speed_rev_s
             }
             Limit::Pressure => -point.condensing_k + self.cycle.highest_condensing_k,
             Limit::Suction => point.evaporating_k - self.cycle.lowest_evaporating_k,
