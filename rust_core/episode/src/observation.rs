@@ -9,7 +9,7 @@ use hp_plant::flows::Flow;
 use hp_plant::numerics::thermal_network::Node;
 use hp_plant::signals::{self, Signal, View};
 use hp_plant::simulation::Experiment;
-use hp_plant::unrolled;
+use hp_plant::{UNROLLED, unrolled};
 
 /// A row of an observation.
 #[derive(Debug, Clone)]
@@ -253,9 +253,9 @@ impl Places {
 
     /// Writes the values of all rows, which are 0 before.
     fn read(&self, look: &Look<'_>, values: &mut [f64]) {
-        if self.defaults_first
-            && let Some(values) = values.first_chunk_mut()
-        {
+        const { assert!(DEFAULTS.len() <= UNROLLED, "more signals than are unrolled") };
+        if self.defaults_first {
+            let values = values.first_chunk_mut().expect("a place for each of them");
             unrolled!(read_default(&look.view, values));
         }
         for &(place, signal) in &self.signals {
@@ -412,6 +412,35 @@ mod tests {
         }
         assert!(rows.iter().all(|row| row.low < row.high && !row.description.is_empty()));
         assert!(rows.len() - crate::action::DEFAULT_ROWS + ACTUATORS.len() <= ROWS);
+    }
+
+    #[test]
+    fn default_signals_show_the_same_read_in_one_line_and_one_by_one() {
+        let actions = default_actions();
+        let table = |names: Vec<String>| ObservationTable::new(&names, &actions).expect("built in");
+        let straight = table(vec![DEFAULT_GROUP.to_owned()]);
+        let names: Vec<String> = straight.rows().iter().rev().map(|row| row.name.clone()).collect();
+        let one_by_one = table(names);
+        assert!(straight.places.defaults_first && !one_by_one.places.defaults_first);
+        let experiment = Experiment::load("jeffs2019/case1-4", None, &[]).expect("built in");
+        let mut run = experiment.start();
+        for _ in 0..600 {
+            let disturbance = experiment.disturbance(run.steps.saturating_sub(1));
+            let asked = experiment.rule_based_command(&mut run);
+            let view = View {
+                plant: &experiment.plant,
+                state: &run.state,
+                record: run.record.as_ref(),
+                disturbance: &disturbance,
+            };
+            let look = Look { view, experiment: &experiment, asked: &asked, steps: run.steps };
+            let mut rows = [vec![0.0; straight.rows().len()], vec![0.0; straight.rows().len()]];
+            straight.write(&look, None::<fn() -> f64>, &mut rows[0]);
+            one_by_one.write(&look, None::<fn() -> f64>, &mut rows[1]);
+            rows[1].reverse();
+            assert_eq!(rows[0], rows[1], "second {}", run.steps);
+            experiment.step(&mut run, &asked);
+        }
     }
 
     #[test]

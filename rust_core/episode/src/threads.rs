@@ -7,12 +7,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Entries that are worth a thread of their own: some microseconds of work.
-const BATCH: usize = 16;
+const WORTH_A_THREAD: usize = 16;
 
 /// Entries that a thread takes at a time: this part of what is left of a share, so that no thread waits long for another
 /// at the end, within these bounds.
 const PART_OF_SHARE: usize = 4;
-const FEWEST: usize = 2;
+const FEWEST: usize = 4;
 const MOST: usize = 64;
 
 /// So long threads look for more work, or wait for the others' last batches, before they sleep: waking one takes tens of
@@ -77,7 +77,7 @@ impl Threads {
     /// Each thread begins with a share of its own, the same every time, so that what it works on stays in its
     /// core's cache. Then it takes what others have left: one that the machine holds up holds up nobody else.
     pub fn work<S: Stretch>(&mut self, mut all: S, work: impl Fn(S) + Sync) {
-        let count = self.count.min(all.count().div_ceil(BATCH));
+        let count = self.count.min(all.count().div_ceil(WORTH_A_THREAD));
         let Some(helpers) = self.helpers(count) else {
             work(all);
             return;

@@ -4,6 +4,7 @@ use crate::action::{ActionTable, DEFAULT_ROWS, Defaults};
 use crate::random::Random;
 use hp_plant::command::{ACTUATORS, Command};
 use hp_plant::error::PlantResult;
+use hp_plant::plant::StepRecord;
 use hp_plant::simulation::{Experiment, Run};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -17,14 +18,16 @@ use std::time::{Duration, Instant};
 /// None with the actuators that there are.
 pub fn compressor_on_steps(experiment: &Experiment, seed: Option<u64>) -> PlantResult<(Duration, usize)> {
     let random = seed.map(|seed| random_commands(experiment, seed)).transpose()?;
-    let step = |run: &mut Run| {
+    let mut record = StepRecord::default();
+    let mut step = |run: &mut Run| {
         let command = match &random {
             Some(commands) => commands[run.steps],
             None => experiment.rule_based_command(run),
         };
         let disturbance = experiment.disturbance(run.steps);
         run.steps += 1;
-        experiment.plant.step(&mut run.state, &command, &disturbance).refrigeration.running()
+        experiment.plant.step_into(&mut run.state, &command, &disturbance, &mut record);
+        record.refrigeration.running()
     };
     let mut rehearsal = experiment.start();
     let running: Vec<bool> = (0..experiment.cycle.duration_s()).map(|_| step(&mut rehearsal)).collect();

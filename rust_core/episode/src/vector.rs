@@ -142,6 +142,9 @@ struct Job<'a> {
 /// So many environments ahead of the one that is worked on are brought into the cache.
 const AHEAD: usize = 2;
 
+/// Shares in which they are asked for, spread over the work on one.
+const SHARES: usize = 3;
+
 /// Cuts off the first entries of a slice.
 fn cut<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     slice.split_off_mut(..count.min(slice.len())).unwrap_or_default()
@@ -195,10 +198,10 @@ impl Vector {
     ) -> Self {
         let count = episodes.len();
         Self {
+            begun: episodes.iter().map(Episode::begun).collect(),
             episodes,
             elapsed: vec![0; count],
             over: vec![false; count],
-            begun: vec![false; count],
             autoreset,
             step_limit,
             threads: Threads::new(threads),
@@ -393,22 +396,22 @@ impl Batch<'_> {
 
 impl Job<'_> {
     fn work(&mut self, actions: Actions<'_>, autoreset: Autoreset, step_limit: Option<u64>) {
-        self.fetch_ahead(0, 3);
+        self.fetch_ahead(0);
         (*self.reward, *self.terminated, *self.truncated) = (0.0, false, false);
         if *self.over && autoreset == Autoreset::NextStep {
             self.begin();
         } else {
             self.step(actions, autoreset, step_limit);
         }
-        self.fetch_ahead(1, 3);
+        self.fetch_ahead(1);
         self.episode.observe(self.observation);
-        self.fetch_ahead(2, 3);
+        self.fetch_ahead(2);
     }
 
     /// Asks for a share of what will be worked on soon.
-    fn fetch_ahead(&self, share: usize, shares: usize) {
+    fn fetch_ahead(&self, share: usize) {
         if let Some(episode) = self.ahead {
-            prefetch(episode, share, shares);
+            prefetch(episode, share, SHARES);
         }
     }
 

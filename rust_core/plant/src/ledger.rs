@@ -1,7 +1,7 @@
 //! The energy ledger of the whole vehicle, wheel and cell to ambient.
 //!
-//! It knows boundary flows and stored energies only. It never sees the network's matrix, the refrigerant
-//! solve or any flow inside the vehicle, so an error in one of those shows up here.
+//! It counts boundary flows and stored energies only (all others count nothing, unless they are no numbers). It never
+//! sees the network's matrix or the refrigerant solve, so an error in one of those shows up here.
 
 use crate::flows::{FLOW_COUNT, Flow, Flows};
 use serde::{Deserialize, Serialize};

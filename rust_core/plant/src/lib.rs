@@ -19,3 +19,6 @@ pub mod signals;
 pub mod simulation;
 pub mod state;
 pub mod summary;
+
+#[doc(hidden)]
+pub use numerics::elimination::MAXIMUM_OPERATIONS as UNROLLED;

@@ -1,4 +1,4 @@
-//! The vehicle: one entry, [`Plant::step`], pure and deterministic.
+//! The vehicle: one entry, [`Plant::step_into`] ([`Plant::step`] returns what it writes), pure and deterministic.
 
 use crate::circuits::assembly::{Assembly, LinkConditions, NODES, RECOVERY_APPROACH_K};
 use crate::circuits::branches::{BRANCH_COUNT, Branch, BranchTable};

@@ -31,7 +31,7 @@ pub struct State {
     pub ptc_pid: ResetPid,
     /// Compressor power against condensing pressure.
     pub pressure_pid: ResetPid,
-    /// Compressor envelope and warm start of the refrigerant solve.
+    /// Compressor envelope and last solution of the refrigerant loop.
     pub refrigeration: RefrigerationState,
     /// Condensing pressure at the end of the last step [Pa].
     pub condensing_pressure_pa: f64,

@@ -12,6 +12,7 @@ use hp_plant::components::heat_exchanger::inlet_conductance_w_k;
 use hp_plant::config::Validate;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
+use std::cell::Cell;
 use support::{boundary, cycle, parameters};
 
 const CASES: u32 = if cfg!(debug_assertions) { 5_000 } else { 50_000 };
@@ -321,4 +322,59 @@ fn a_compressor_that_cannot_be_fed_does_not_start_and_does_not_hold() {
     let first = cycle.step(&mut state, &b, &scarce(loss_w + 1500.0), 1.0);
     assert!(first.running() && first.electric_power_w <= loss_w + 1500.0 + 1e-6);
     assert!(!cycle.step(&mut state, &b, &scarce(1.0), 1.0).running(), "held on without power");
+}
+
+/// Newton is what makes a step fast; bracketing is there for what it misses, and decides where the gas is too hot at
+/// every speed.
+#[test]
+fn nearly_every_problem_is_solved_by_newton_in_a_few_iterations() {
+    let cycle = cycle();
+    let (solved, bracketed, iterations) = (Cell::new(0_u32), Cell::new(0), Cell::new(0));
+    for_all((any_boundary(), any_demand(), any_warm_start()), |(b, d, warm)| {
+        let result = cycle.solve(&b, &d, warm.as_ref());
+        if result.iterations > 0 && result.limited_by != Limit::Discharge {
+            solved.set(solved.get() + 1);
+            bracketed.set(bracketed.get() + u32::from(result.bracketed));
+            iterations.set(iterations.get() + if result.bracketed { 0 } else { result.iterations });
+        }
+        Ok(())
+    });
+    let share = |count: u32| f64::from(count) / f64::from(solved.get());
+    assert!(solved.get() > CASES / 4);
+    assert!(share(bracketed.get()) < 0.01, "{} of {} bracketed", bracketed.get(), solved.get());
+    assert!(share(iterations.get()) < 6.0, "{} iterations each", share(iterations.get()));
+}
+
+#[test]
+fn what_is_remembered_changes_iterations_but_no_result() {
+    let (cycle, mut random) = (cycle(), 12_345_u64);
+    let mut next = move || {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (random >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut state = RefrigerationState::parked();
+    let (mut remembering, mut forgetting, mut ran) = (0, 0, 0);
+    for second in 0..4000 {
+        // Pauses, jumps and stretches without any change.
+        let (hot, cold) = (45.0 + 10.0 * next(), -5.0 + 8.0 * next());
+        let (b, power) =
+            (boundary(hot, cold, 900.0, 700.0), if next() < 0.2 { 0.0 } else { 4000.0 * next() });
+        for _ in 0..1 + second % 4 {
+            let allowed = CompressorAllowance { demand_w: power, available_w: 1e5, may_start: true };
+            let mut blank = RefrigerationState { last: None, ..state };
+            let with = cycle.step(&mut state, &b, &allowed, 1.0);
+            let without = cycle.step(&mut blank, &b, &allowed, 1.0);
+            assert_eq!(with.status, without.status, "second {second}");
+            let close = |a: f64, b: f64| (a - b).abs() <= 1e-6 * a.abs().max(1.0);
+            assert!(close(with.electric_power_w, without.electric_power_w), "{with:?} {without:?}");
+            assert!(close(with.condenser_heat_flow_w, without.condenser_heat_flow_w), "{with:?} {without:?}");
+            if with.running() {
+                ran += 1;
+                remembering += with.iterations;
+                forgetting += without.iterations;
+            }
+        }
+    }
+    assert!(ran > 2000, "{ran}");
+    assert!(remembering < forgetting, "{remembering} and {forgetting} iterations");
 }

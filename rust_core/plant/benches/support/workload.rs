@@ -29,23 +29,23 @@ impl Segment {
     /// Drives the stretch once; the sum of battery powers keeps the compiler honest.
     pub fn replay(&self) -> f64 {
         let mut run = self.start;
-        let mut sum = 0.0;
+        let (mut sum, mut record) = (0.0, StepRecord::default());
         for step in 0..self.steps {
-            let record = self.step(&mut run, step);
+            self.step(&mut run, step, &mut record);
             sum += black_box(&record).battery_current_a;
         }
         sum
     }
 
     #[inline(always)]
-    fn step(&self, run: &mut Run, step: usize) -> StepRecord {
+    fn step(&self, run: &mut Run, step: usize, record: &mut StepRecord) {
         let command = match &self.driver {
             Driver::RuleBased => self.experiment.rule_based_command(run),
             Driver::Prepared(commands) => commands[step],
         };
         let disturbance = self.experiment.disturbance(run.steps);
         run.steps += 1;
-        self.experiment.plant.step(&mut run.state, &command, &disturbance)
+        self.experiment.plant.step_into(&mut run.state, &command, &disturbance, record);
     }
 }
 

@@ -58,34 +58,42 @@ impl Branch {
         Self::ThermalBatteryChiller,
     ];
 
-    /// Member that each branch connects.
-    const MEMBERS: [Member; BRANCH_COUNT] = [
-        Member::Cabin,
-        Member::Battery,
-        Member::Ambient,
-        Member::Motor,
-        Member::Transmission,
-        Member::Battery,
-        Member::Ambient,
-        Member::Cabin,
-        Member::ThermalBattery,
-        Member::ThermalBattery,
-    ];
-
-    /// Whether each branch belongs to the HTC; the others belong to the chiller loop.
-    const HOT: [bool; BRANCH_COUNT] = [true, true, true, false, false, false, false, false, true, false];
-
     /// Member that it connects.
     #[must_use]
-    pub fn member(self) -> Member {
-        Self::MEMBERS[self as usize]
+    pub const fn member(self) -> Member {
+        match self {
+            Self::CabinHtc | Self::CabinChiller => Member::Cabin,
+            Self::BatteryHtc | Self::BatteryChiller => Member::Battery,
+            Self::AmbientHtc | Self::AmbientChiller => Member::Ambient,
+            Self::MotorChiller => Member::Motor,
+            Self::TransmissionChiller => Member::Transmission,
+            Self::ThermalBatteryHtc | Self::ThermalBatteryChiller => Member::ThermalBattery,
+        }
     }
 
     /// Loop that it belongs to.
     #[must_use]
-    pub fn connection(self) -> Connection {
-        if Self::HOT[self as usize] { Connection::Htc } else { Connection::Chiller }
+    pub const fn connection(self) -> Connection {
+        match self {
+            Self::CabinHtc | Self::BatteryHtc | Self::AmbientHtc | Self::ThermalBatteryHtc => Connection::Htc,
+            _ => Connection::Chiller,
+        }
     }
+
+    /// [`Self::member`] of each branch and whether it belongs to the HTC, looked up instead of branched on.
+    const MEMBERS: [Member; BRANCH_COUNT] = Self::TABLES.0;
+    const HOT: [bool; BRANCH_COUNT] = Self::TABLES.1;
+    const TABLES: ([Member; BRANCH_COUNT], [bool; BRANCH_COUNT]) = {
+        let mut tables = ([Member::Cabin; BRANCH_COUNT], [false; BRANCH_COUNT]);
+        let mut i = 0;
+        while i < BRANCH_COUNT {
+            assert!(Self::ALL[i] as usize == i, "branches are listed in their order");
+            tables.0[i] = Self::ALL[i].member();
+            tables.1[i] = matches!(Self::ALL[i].connection(), Connection::Htc);
+            i += 1;
+        }
+        tables
+    };
 
     /// The branch of a member in a loop, if there is one.
     #[must_use]
@@ -176,8 +184,8 @@ pub fn grant(
 ) -> [bool; BRANCH_COUNT] {
     let allowed = allowed(vehicle, temperatures, connected);
     from_fn(|i| {
-        let branch = Branch::ALL[i];
-        (connections[branch.member() as usize] == branch.connection()) & allowed[i]
+        let asked = connections[Branch::MEMBERS[i] as usize];
+        (asked == if Branch::HOT[i] { Connection::Htc } else { Connection::Chiller }) & allowed[i]
     })
 }
 
@@ -291,7 +299,7 @@ impl BranchTable {
         flows: &BranchFlows,
         connected: &[bool; BRANCH_COUNT],
     ) -> BranchValues {
-        let mut open = [0.0; BRANCH_PLACES];
+        let mut open = [1.0; BRANCH_PLACES];
         let mut rate_w_k = [0.0; BRANCH_PLACES];
         let mut valve = [0.0; BRANCH_PLACES];
         let (hot_open, cold_open) = (self.open_share(true, connected), self.open_share(false, connected));
@@ -325,5 +333,46 @@ impl BranchTable {
             largest_w_k[i] = if connected[i] { largest_w_k[i] } else { 0.0 };
         }
         largest_w_k
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_branch_is_driven_by_its_member_and_its_loop() {
+        let temperatures = BranchTemperatures {
+            htc_supply_k: 1.0,
+            condenser_outlet_k: 2.0,
+            chiller_supply_k: 4.0,
+            battery_k: 8.0,
+            motor_k: 16.0,
+            transmission_k: 32.0,
+            thermal_battery_k: 64.0,
+            core_inlet_k: 128.0,
+            ambient_k: 256.0,
+        };
+        let member_k = |member: Member| match member {
+            Member::Battery => temperatures.battery_k,
+            Member::Motor => temperatures.motor_k,
+            Member::Transmission => temperatures.transmission_k,
+            Member::Ambient => temperatures.ambient_k,
+            Member::ThermalBattery => temperatures.thermal_battery_k,
+            Member::Cabin => temperatures.core_inlet_k,
+        };
+        for branch in Branch::ALL {
+            let member_k = member_k(branch.member());
+            let expected = match (branch, branch.connection()) {
+                (Branch::ThermalBatteryHtc, _) => member_k - temperatures.condenser_outlet_k,
+                (Branch::CabinChiller | Branch::AmbientChiller, _) => {
+                    member_k - temperatures.chiller_supply_k
+                }
+                (_, Connection::Htc) => temperatures.htc_supply_k - member_k,
+                _ => member_k - temperatures.chiller_supply_k,
+            };
+            assert_eq!(temperatures.difference_k(branch), expected, "{branch:?}");
+            assert_eq!(Branch::of(branch.member(), branch.connection()), Some(branch));
+        }
     }
 }

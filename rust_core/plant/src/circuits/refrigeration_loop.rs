@@ -22,9 +22,9 @@ const LARGEST_TREND: f64 = 1.0;
 /// Change of speed, as a share of it, from which on a demand that jumped explains it better than the trend.
 const SMALLEST_JUMP: f64 = 0.03;
 
-/// Relative change of speed per relative change of power, and of the temperature differences per that of speed: between
-/// seconds under random actions power goes with speed to the power of 1.1, the differences with 0.81 and 0.85. Only the
-/// number of iterations depends on it.
+/// Relative change of speed per relative change of power, and of the temperature differences per that of speed: those
+/// that needed the fewest iterations under random actions. (Power goes with speed to the power of 1.1 there, the
+/// differences with about 0.83.) No result depends on them.
 const SPEED_BY_POWER: f64 = 0.9;
 const DIFFERENCE_BY_SPEED: f64 = 0.86;
 
@@ -126,7 +126,7 @@ pub struct LoopResult {
     pub superheat_k: f64,
     /// Subcooling at the condenser outlet [K].
     pub subcooling_k: f64,
-    /// Newton iterations of all limits tried.
+    /// Newton iterations of all attempts: limits, discharge temperature, single speeds.
     pub iterations: u32,
     /// Newton gave up and bracketing over speed solved.
     pub bracketed: bool,
@@ -138,12 +138,12 @@ pub struct LastSolution {
     /// Coolant entering the evaporator less evaporating temperature, condensing temperature less coolant entering the
     /// condenser [K], speed [rev/s].
     distances: [f64; 3],
-    /// How much these changed in the last step; 0 where they jumped.
+    /// How much these changed in the last step; 0 where they jumped or the machine had stood still.
     trend: [f64; 3],
     /// Electrical power without start loss [W].
     electric_power_w: f64,
     /// Power or speed held the machine back, nothing else.
-    free: bool,
+    by_power_or_speed: bool,
 }
 
 /// Memory of the loop.
@@ -162,25 +162,25 @@ impl RefrigerationState {
         Self { compressor: CompressorState::parked(), last: None }
     }
 
-    /// Keeps a solution, if the machine ran, and how it changed.
+    /// Keeps a solution, if the machine ran, and how it changed from that of the step before.
     fn remember(&mut self, boundary: &LoopBoundary, result: &LoopResult) {
         if !result.running() {
             return;
         }
+        let before = self.last.filter(|_| self.compressor.running);
         let distances = [
             boundary.cold_return_k - result.evaporating_temperature_k,
             result.condensing_temperature_k - boundary.hot_return_k,
             result.speed_rev_s,
         ];
-        let change = self
-            .last
+        let change = before
             .map_or([f64::INFINITY; 3], |last| std::array::from_fn(|k| distances[k] - last.distances[k]));
         let steady = change.iter().all(|part| part.abs() < LARGEST_TREND);
         self.last = Some(LastSolution {
             distances,
             trend: if steady { change } else { [0.0; 3] },
             electric_power_w: result.electric_power_w,
-            free: matches!(result.limited_by, Limit::Power | Limit::Speed | Limit::MinimumSpeed),
+            by_power_or_speed: matches!(result.limited_by, Limit::Power | Limit::Speed | Limit::MinimumSpeed),
         });
     }
 }
@@ -189,17 +189,17 @@ impl LastSolution {
     /// Where the solution of a demand is expected: straight lines through the last one. Where speed hardly changes,
     /// everything goes on as before.
     fn expected(&self, boundary: &LoopBoundary, demand: &LoopDemand, minimum_speed_rev_s: f64) -> WarmStart {
-        let more_power = demand.power_limit_w.max(0.0) / self.electric_power_w;
-        let by_power = 1.0 + SPEED_BY_POWER * (more_power - 1.0);
-        let by_power = if self.free { by_power } else { by_power.min(1.0) };
+        let power_ratio = demand.power_limit_w.max(0.0) / self.electric_power_w;
+        let by_power = 1.0 + SPEED_BY_POWER * (power_ratio - 1.0);
+        let by_power = if self.by_power_or_speed { by_power } else { by_power.min(1.0) };
         let [cold_k, hot_k, last_rev_s] = self.distances;
         let speed_rev_s = (last_rev_s * by_power).min(demand.speed_limit_rev_s).max(minimum_speed_rev_s);
-        let faster = speed_rev_s / last_rev_s - 1.0;
-        let [cold_k, hot_k, speed_rev_s] = if faster.abs() < SMALLEST_JUMP {
+        let speed_change = speed_rev_s / last_rev_s - 1.0;
+        let [cold_k, hot_k, speed_rev_s] = if speed_change.abs() < SMALLEST_JUMP {
             std::array::from_fn(|k| self.distances[k] + self.trend[k])
         } else {
-            let further = 1.0 + DIFFERENCE_BY_SPEED * faster;
-            [cold_k * further, hot_k * further, speed_rev_s]
+            let difference_ratio = 1.0 + DIFFERENCE_BY_SPEED * speed_change;
+            [cold_k * difference_ratio, hot_k * difference_ratio, speed_rev_s]
         };
         WarmStart {
             evaporating_k: boundary.cold_return_k - cold_k,

@@ -71,7 +71,7 @@ pub struct SupplyLimit {
     pub limit_k: f64,
 }
 
-/// Start values for Newton: the last solution.
+/// Start values for Newton: where the solution is expected.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WarmStart {
     /// Evaporating temperature [K].
@@ -311,7 +311,13 @@ impl Solver<'_> {
                 step[2] / (fastest * speed),
             ]);
             let scale = if longest > 1.0 { longest.recip() } else { 1.0 };
-            unknowns = self.confine(std::array::from_fn(|k| unknowns[k] + scale * step[k]));
+            let slowest = 0.5 * self.minimum_speed();
+            let next = self.confine(std::array::from_fn(|k| unknowns[k] + scale * step[k]));
+            if matches!(closure, Closure::Discharge) && unknowns[2] == slowest && next[2] == slowest {
+                // Pushed against the end of the range twice: the root lies outside.
+                return None;
+            }
+            unknowns = next;
             let mut error = largest(errors);
             while error < CHORD_ERROR {
                 let point = self.cycle.point(&self.sides, unknowns);

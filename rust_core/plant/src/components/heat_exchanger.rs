@@ -9,7 +9,7 @@ use crate::numerics::elementary;
 #[inline]
 pub fn inlet_conductance_w_k(capacity_rate_w_k: f64, ua_w_k: f64) -> f64 {
     let conductance_w_k = -capacity_rate_w_k * elementary::exp_m1(-ua_w_k / capacity_rate_w_k);
-    if capacity_rate_w_k > 0.0 { conductance_w_k } else { 0.0 }
+    if capacity_rate_w_k <= 0.0 { 0.0 } else { conductance_w_k }
 }
 
 /// Conductance between the inlet temperatures of two flows in counterflow [W/K].

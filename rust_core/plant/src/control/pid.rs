@@ -77,12 +77,6 @@ impl IncrementalPid {
         Self { output, ..Self::default() }
     }
 
-    /// Present output.
-    #[must_use]
-    pub fn value(&self) -> f64 {
-        self.output
-    }
-
     /// Moves the output for an error and limits it to `low..=high`.
     pub fn update(&mut self, gains: &PidParameters, error: f64, period_s: f64, low: f64, high: f64) -> f64 {
         *self = self.updated(gains, error, period_s, low, high);
@@ -142,7 +136,7 @@ mod tests {
         for _ in 0..1000 {
             pid.update(&gains, 1.0, 1.0, 0.0, 1.0);
         }
-        assert_eq!(pid.value(), 1.0);
+        assert_eq!(pid.output, 1.0);
         assert_eq!(pid.update(&gains, -0.1, 1.0, 0.0, 1.0), 0.95);
     }
 

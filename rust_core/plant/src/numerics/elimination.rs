@@ -10,7 +10,7 @@ use super::thermal_network::{LinkPorts, MAXIMUM_NODES, Node};
 pub(super) const MAXIMUM_ENTRIES: usize = 64;
 
 /// Largest number of operations of a list, that of [`unrolled`].
-const MAXIMUM_OPERATIONS: usize = 96;
+pub const MAXIMUM_OPERATIONS: usize = 96;
 
 const ABSENT: u8 = u8::MAX;
 

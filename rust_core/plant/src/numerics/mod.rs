@@ -3,7 +3,7 @@
 pub mod cubic_table;
 pub mod dual;
 pub mod elementary;
-mod elimination;
+pub(crate) mod elimination;
 pub mod interpolation;
 pub mod root;
 pub mod thermal_network;
