@@ -295,7 +295,12 @@ impl RefrigerationCycle {
             cold_supply: boundary.cold_supply,
             power_limit_w,
             speed_limit_rev_s,
-            scales: Scales::of(power_limit_w, speed_limit_rev_s, parameters.minimum_speed_rev_s),
+            scales: Scales::of(
+                self,
+                &sides,
+                (&boundary.hot_supply, &boundary.cold_supply),
+                (power_limit_w, speed_limit_rev_s),
+            ),
             hold: demand.hold_minimum_speed,
             iterations: Cell::new(0),
             bracketed: false,

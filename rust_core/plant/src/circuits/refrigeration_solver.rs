@@ -19,15 +19,17 @@ const RESIDUAL_TOLERANCE: f64 = 1e-8;
 /// Error below which further steps use the derivatives at hand, as long as each leaves at most a share of the error.
 const CHORD_ERROR: f64 = 0.3;
 const CHORD_SHARE: f64 = 0.03;
-/// How far a limit may be missed, in its scaled unit (1 K, or 1 % of power or speed).
+/// How far a limit may be missed, in its scaled unit (see [`Scales`]; 1 K of discharge temperature).
 const LIMIT_TOLERANCE: f64 = 1e-6;
 const MAX_NEWTON_ITERATIONS: u32 = 25;
 /// Longest Newton step of a temperature [K].
 const MAX_TEMPERATURE_STEP_K: f64 = 10.0;
 /// Largest factor by which one Newton step changes speed.
 const MAX_SPEED_FACTOR: f64 = 3.0;
-/// Power and speed errors are scaled with this share of the limit.
+/// Errors of limits are scaled with this share of what lies between standstill and the limit.
 const SCALE_SHARE: f64 = 0.01;
+/// Smallest room that counts for the scale [W or K].
+const SMALLEST_ROOM: f64 = 1.0;
 
 /// What holds the compressor back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -82,21 +84,39 @@ pub struct WarmStart {
     pub speed_rev_s: f64,
 }
 
-/// Reciprocals of [`SCALE_SHARE`] of the limits, worked out once a problem.
+/// What makes margins comparable: reciprocals of [`SCALE_SHARE`] of what lies between standstill and each limit.
+///
+/// Power, heat flows and temperature differences all rise about with speed, so a margin is about the change of speed, in
+/// per cent, that is left. In other units, kelvin beside watt, the least margin could belong to a limit that is far
+/// away, and Newton would jump to and fro between two limits.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scales {
     per_power_w: f64,
     per_speed_rev_s: f64,
     per_minimum_speed_rev_s: f64,
+    per_pressure_k: f64,
+    per_suction_k: f64,
+    per_hot_supply_k: f64,
+    per_cold_supply_k: f64,
 }
 
 impl Scales {
-    pub fn of(power_limit_w: f64, speed_limit_rev_s: f64, minimum_speed_rev_s: f64) -> Self {
+    pub fn of(
+        cycle: &RefrigerationCycle,
+        sides: &CoolantSides,
+        (hot_supply, cold_supply): (&SupplyLimit, &SupplyLimit),
+        (power_limit_w, speed_limit_rev_s): (f64, f64),
+    ) -> Self {
         let per = |limit: f64| (SCALE_SHARE * limit).recip();
+        let per_room = |room: f64| per(room.max(SMALLEST_ROOM));
         Self {
-            per_power_w: per(power_limit_w.max(1.0)),
+            per_power_w: per_room(power_limit_w),
             per_speed_rev_s: per(speed_limit_rev_s),
-            per_minimum_speed_rev_s: per(minimum_speed_rev_s),
+            per_minimum_speed_rev_s: per(cycle.parameters.compressor.minimum_speed_rev_s),
+            per_pressure_k: per_room(cycle.highest_condensing_k - sides.hot_inlet_k),
+            per_suction_k: per_room(sides.cold_inlet_k - cycle.lowest_evaporating_k),
+            per_hot_supply_k: per_room(hot_supply.limit_k - hot_supply.base_k),
+            per_cold_supply_k: per_room(cold_supply.base_k - cold_supply.limit_k),
         }
     }
 }
@@ -109,7 +129,7 @@ pub(super) struct Solver<'a> {
     pub cold_supply: SupplyLimit,
     pub power_limit_w: f64,
     pub speed_limit_rev_s: f64,
-    /// What makes margins of power, speed and minimum speed comparable with kelvin.
+    /// What makes margins comparable.
     pub scales: Scales,
     /// Run at minimum speed although power allows less.
     pub hold: bool,
@@ -155,15 +175,19 @@ impl Solver<'_> {
             Limit::MinimumSpeed => {
                 (-point.speed_rev_s + self.minimum_speed()) * self.scales.per_minimum_speed_rev_s
             }
-            Limit::Pressure => -point.condensing_k + self.cycle.highest_condensing_k,
-            Limit::Suction => point.evaporating_k - self.cycle.lowest_evaporating_k,
+            Limit::Pressure => {
+                (-point.condensing_k + self.cycle.highest_condensing_k) * self.scales.per_pressure_k
+            }
+            Limit::Suction => {
+                (point.evaporating_k - self.cycle.lowest_evaporating_k) * self.scales.per_suction_k
+            }
             Limit::HotCoolant => {
                 let SupplyLimit { base_k, sensitivity_k_w, limit_k } = self.hot_supply;
-                -(point.condenser_w * sensitivity_k_w) + (limit_k - base_k)
+                (-(point.condenser_w * sensitivity_k_w) + (limit_k - base_k)) * self.scales.per_hot_supply_k
             }
             Limit::ColdCoolant => {
                 let SupplyLimit { base_k, sensitivity_k_w, limit_k } = self.cold_supply;
-                -(point.evaporator_w * sensitivity_k_w) + (base_k - limit_k)
+                (-(point.evaporator_w * sensitivity_k_w) + (base_k - limit_k)) * self.scales.per_cold_supply_k
             }
             Limit::Discharge => -self.cycle.discharge_k(point) + self.cycle.highest_discharge_k,
         }
