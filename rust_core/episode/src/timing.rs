@@ -62,6 +62,8 @@ fn random_commands(experiment: &Experiment, seed: u64) -> PlantResult<Vec<Comman
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hp_plant::circuits::refrigeration_loop::Limit;
+    use hp_plant::config::library::{self, Kind};
 
     #[test]
     fn the_steps_timed_are_those_with_the_compressor_on() {
@@ -76,6 +78,27 @@ mod tests {
         let (spent, steps) = compressor_on_steps(&experiment, None).expect("built in");
         assert_eq!(steps, running);
         assert!(steps > 600 && spent > Duration::ZERO);
+    }
+
+    /// Two limits often meet at nearly the same speed then; Newton must not jump to and fro between them.
+    #[test]
+    fn random_actions_hardly_ever_need_bracketing() {
+        let (mut solved, mut bracketed) = (0, 0);
+        let scenarios = library::names(Kind::Scenario);
+        for (seed, scenario) in scenarios.iter().enumerate() {
+            let experiment = Experiment::load(scenario, None, &[]).expect("built in");
+            let mut run = experiment.start();
+            for command in random_commands(&experiment, seed as u64).expect("built in") {
+                if experiment.step(&mut run, &command).is_some() {
+                    break;
+                }
+                let refrigeration = run.record.expect("a step was made").refrigeration;
+                solved += u32::from(refrigeration.iterations > 0);
+                bracketed +=
+                    u32::from(refrigeration.bracketed && refrigeration.limited_by != Limit::Discharge);
+            }
+        }
+        assert!(solved > 5000 && bracketed * 2000 < solved, "{bracketed} of {solved}");
     }
 
     #[test]

@@ -345,23 +345,6 @@ fn nearly_every_problem_is_solved_by_newton_in_a_few_iterations() {
     assert!(share(iterations.get()) < 5.0, "{} iterations each", share(iterations.get()));
 }
 
-/// Power and cold coolant reach their limits at nearly the same speed, the coolant's margin hardly changing with it.
-#[test]
-fn two_limits_that_nearly_meet_do_not_send_newton_to_and_fro() {
-    let b = LoopBoundary {
-        hot_return_k: 306.207_4,
-        cold_return_k: 265.871_8,
-        hot_capacity_rate_w_k: 884.0,
-        cold_capacity_rate_w_k: 832.0,
-        hot_supply: SupplyLimit { base_k: 314.008, sensitivity_k_w: 9.017e-5, limit_k: 363.15 },
-        cold_supply: SupplyLimit { base_k: 263.377_681, sensitivity_k_w: 5.317_7e-5, limit_k: 263.15 },
-    };
-    let demand = LoopDemand { power_limit_w: 1312.474, speed_limit_rev_s: 72.416, hold_minimum_speed: false };
-    let near = WarmStart { evaporating_k: 257.403_094, condensing_k: 311.730_592, speed_rev_s: 61.884_393 };
-    let result = cycle().solve(&b, &demand, Some(&near));
-    assert!(result.running() && !result.bracketed && result.iterations <= 4, "{result:?}");
-}
-
 #[test]
 fn what_is_remembered_changes_iterations_but_no_result() {
     let (cycle, mut random) = (cycle(), 12_345_u64);
