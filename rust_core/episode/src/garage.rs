@@ -5,7 +5,6 @@ use hp_plant::config::scenario::{ClimateParameters, InitialParameters};
 use hp_plant::control::hpcu::Hpcu;
 use hp_plant::drive_cycle::DriveCycle;
 use hp_plant::error::PlantResult;
-use hp_plant::media::air;
 use hp_plant::plant::Plant;
 use hp_plant::simulation::Experiment;
 use serde::{Deserialize, Serialize};
@@ -117,7 +116,7 @@ impl Garage {
             // Nearly all trips have the controller of their origin.
             hpcu: if hpcu == *origin.hpcu { Arc::clone(&origin.hpcu) } else { Arc::new(hpcu) },
             scenario: Arc::clone(&origin.scenario),
-            air: air::at_temperature(ambient.kelvin()),
+            air: trip.climate.air(),
             climate: trip.climate,
             initial: trip.initial,
             plant: Arc::clone(&origin.plant),

@@ -15,7 +15,7 @@ const PART_OF_SHARE: usize = 4;
 const FEWEST: usize = 4;
 const MOST: usize = 64;
 
-/// So long threads look for more work, or wait for the others' last batches, before they sleep: waking one takes tens of
+/// So long threads look for more work, or wait for the others' last parts, before they sleep: waking one takes tens of
 /// microseconds, as long as a tight loop of steps spends between two of them.
 const AWAKE: Duration = Duration::from_micros(100);
 

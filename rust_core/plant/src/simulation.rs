@@ -9,7 +9,7 @@ use crate::control::hpcu::{Hpcu, HpcuState};
 use crate::drive_cycle::DriveCycle;
 use crate::error::{PlantError, PlantResult};
 use crate::flows::Flow;
-use crate::media::air::{self, AirProperties};
+use crate::media::air::AirProperties;
 use crate::plant::{Disturbance, Plant, StepRecord};
 use crate::signals::{self, View};
 use crate::state::State;
@@ -24,7 +24,7 @@ pub struct Experiment {
     pub scenario: Arc<ScenarioParameters>,
     /// Climate of this run.
     pub climate: ClimateParameters,
-    /// Its air.
+    /// Ambient air of that climate, worked out once.
     pub air: AirProperties,
     /// Initial state of this run.
     pub initial: InitialParameters,
@@ -125,7 +125,7 @@ impl Experiment {
             controller: controller.into(),
             hpcu: Arc::new(Hpcu::of(&rules, &scenario.strategy, scenario.climate.ambient_temperature_degc)),
             rules,
-            air: air::at_temperature(scenario.climate.ambient_temperature_degc.kelvin()),
+            air: scenario.climate.air(),
             climate: scenario.climate.clone(),
             initial: scenario.initial.clone(),
             scenario: Arc::new(scenario),

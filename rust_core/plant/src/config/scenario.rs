@@ -2,6 +2,7 @@
 
 use super::{Celsius, Validate, Violation, check_range};
 use crate::command::{Connection, Member};
+use crate::media::air::{self, AirProperties};
 use crate::parameters;
 use serde::{Deserialize, Serialize};
 
@@ -39,6 +40,14 @@ parameters! {
         solar_gain_w: f64 = 0.0 .. 3000.0,
         /// Number of people (ours; the driver in the paper).
         occupants: u32 = 0 .. 9,
+    }
+}
+
+impl ClimateParameters {
+    /// Ambient air.
+    #[must_use]
+    pub fn air(&self) -> AirProperties {
+        air::at_temperature(self.ambient_temperature_degc.kelvin())
     }
 }
 
