@@ -32,7 +32,7 @@ impl ReferenceConditions {
     #[must_use]
     pub fn of(experiment: &Experiment) -> Self {
         let vehicle = &experiment.plant.vehicle;
-        let pump = |circuit: &hp_plant::config::coolant::LoopParameters| {
+        let pump = |circuit: &hp_plant::components::coolant_loop::LoopParameters| {
             circuit.pump.power_w(circuit.pump.minimum_flow_kg_s)
         };
         Self {

@@ -10,6 +10,7 @@ use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_mai
 use hp_plant::circuits::assembly::{LinkConditions, NODES};
 use hp_plant::circuits::branches::{BRANCH_PLACES, Branch};
 use hp_plant::circuits::refrigeration_loop::{LoopDemand, SupplyLimit, WarmStart};
+use hp_plant::components::exhaust_recovery::ExhaustRecovery;
 use hp_plant::numerics::thermal_network::NodeValues;
 use hp_plant::plant::StepRecord;
 use hp_plant::simulation::{Experiment, Run};
@@ -90,8 +91,7 @@ fn network(criterion: &mut Criterion) {
         chiller_rate_w_k: 900.0,
         branches_w_k,
         ventilation: plant.vehicle.cabin.ventilation(0.5, 0.3, 1.0),
-        recovery_w_k: 20.0,
-        recovery_meets_chiller: false,
+        recovery: ExhaustRecovery { conductance_w_k: 20.0, meets_chiller: false },
         speed_m_s: 20.0,
         battery_ambient_w_k: 10.0,
         ambient_k: 263.15,

@@ -1,6 +1,6 @@
 //! The vehicle: one entry, [`Plant::step_into`] ([`Plant::step`] returns what it writes), pure and deterministic.
 
-use crate::circuits::assembly::{Assembly, LinkConditions, NODES, RECOVERY_APPROACH_K};
+use crate::circuits::assembly::{Assembly, LinkConditions, NODES};
 use crate::circuits::branches::{BRANCH_COUNT, Branch, BranchTable};
 use crate::circuits::refrigeration_cycle::RefrigerationCycle;
 use crate::circuits::refrigeration_loop::{
@@ -8,11 +8,12 @@ use crate::circuits::refrigeration_loop::{
 };
 use crate::command::{ActuatorRanges, Command};
 use crate::components::battery::{Battery, BatteryStep, CircuitStep, PowerLimits};
+use crate::components::exhaust_recovery::{ExhaustRecovery, RecoveryTemperatures};
+use crate::components::pid::ResetPid;
 use crate::components::powertrain::Powertrain;
 use crate::config::library::{self, Kind, Override};
 use crate::config::scenario::InitialParameters;
 use crate::config::vehicle::VehicleParameters;
-use crate::control::pid::ResetPid;
 use crate::control::thermal_switch::ThermalSwitches;
 use crate::control::vehicle_controls::{ControlGains, Period};
 use crate::error::PlantResult;
@@ -332,10 +333,9 @@ impl Plant {
         // depends on.
         let hot_supply_k = boundary.hot_supply.base_k
             + boundary.hot_supply.sensitivity_k_w * refrigeration.condenser_heat_flow_w;
-        let to_cutoff_w =
-            (vehicle.ptc.cutoff_degc.kelvin() - hot_supply_k) / boundary.hot_supply.sensitivity_k_w;
+        let to_cutoff_w = vehicle.ptc.power_to_cutoff_w(hot_supply_k, boundary.hot_supply.sensitivity_k_w);
         let ptc_spare_w = (spare_w - refrigeration.electric_power_w).max(0.0);
-        let ptc_w = period.ptc_demand_w.min(to_cutoff_w.max(0.0));
+        let ptc_w = period.ptc_demand_w.min(to_cutoff_w);
         flows[Flow::Ptc] = ptc_w.min(ptc_spare_w);
         let held_back = compressor_w < period.compressor_demand_w && refrigeration.limited_by == Limit::Power;
         let loads_shed = held_back || flows[Flow::Ptc] < ptc_w;
@@ -397,19 +397,19 @@ impl Plant {
         speed_m_s: f64,
     ) -> LinkConditions {
         let nodes = NODES;
-        let cabin_k = state.temperatures_k[nodes.cabin.index()];
-        let lowest_k = state.temperatures_k[nodes.chiller_supply.index()] + RECOVERY_APPROACH_K;
-        let recovers = period.branches_w_k[Branch::CabinHtc as usize] > 0.0
-            && cabin_k > lowest_k
-            && cabin_k > disturbance.air.temperature_k;
+        let temperatures = RecoveryTemperatures {
+            cabin_k: state.temperatures_k[nodes.cabin.index()],
+            chiller_supply_k: state.temperatures_k[nodes.chiller_supply.index()],
+            ambient_k: disturbance.air.temperature_k,
+        };
+        let cabin_is_heated = period.branches_w_k[Branch::CabinHtc as usize] > 0.0;
         let recovery_w_k = self.vehicle.cabin.exhaust_recovery_share * period.ventilation.fresh_rate_w_k;
         LinkConditions {
             htc_rate_w_k: period.htc_rate_w_k,
             chiller_rate_w_k: period.chiller_rate_w_k,
             branches_w_k: period.branches_w_k,
             ventilation: period.ventilation,
-            recovery_w_k: if recovers { recovery_w_k } else { 0.0 },
-            recovery_meets_chiller: lowest_k > disturbance.air.temperature_k,
+            recovery: ExhaustRecovery::during(recovery_w_k, cabin_is_heated, &temperatures),
             speed_m_s,
             battery_ambient_w_k: self
                 .vehicle

@@ -2,6 +2,8 @@
 
 use super::branches::{Branch, BranchValues};
 use crate::components::cabin::Ventilation;
+use crate::components::exhaust_recovery::ExhaustRecovery;
+use crate::components::thermal_battery;
 use crate::config::vehicle::VehicleParameters;
 use crate::flows::{Flow, Flows};
 use crate::numerics::thermal_network::{LinkPorts, LinkState, Node, NodeValues, ThermalNetwork, Topology};
@@ -46,10 +48,8 @@ pub struct LinkConditions {
     pub branches_w_k: BranchValues,
     /// Air flows.
     pub ventilation: Ventilation,
-    /// Conductance of the exhaust recovery; 0 when it is off [W/K].
-    pub recovery_w_k: f64,
-    /// Whether the exhaust recovery is limited by the chiller supply rather than by ambient.
-    pub recovery_meets_chiller: bool,
+    /// Exhaust recovery.
+    pub recovery: ExhaustRecovery,
     /// Mean vehicle speed [m/s].
     pub speed_m_s: f64,
     /// Conductance between battery and ambient [W/K].
@@ -57,9 +57,6 @@ pub struct LinkConditions {
     /// Ambient temperature [K].
     pub ambient_k: f64,
 }
-
-/// Smallest temperature difference that the exhaust recovery leaves to the chiller supply [K] (assumed).
-pub const RECOVERY_APPROACH_K: f64 = 1.0;
 
 /// The vehicle's nodes.
 pub const NODES: Nodes = Nodes {
@@ -207,8 +204,8 @@ impl Assembly {
         let ambient = |conductance_w_k: f64| LinkState::to_fixed(conductance_w_k, now.ambient_k);
         let branch = |branch: Branch| branch_state(branch, now);
         let half_hose = [&vehicle.htc.circuit, &vehicle.chiller.circuit]
-            .map(|circuit| ambient(0.5 * circuit.hose_conductance_w_k));
-        let (recovery_from_ambient, recovery_from_chiller) = recovery_states(now);
+            .map(|circuit| ambient(circuit.half_hose_conductance_w_k()));
+        let (recovery_from_ambient, recovery_from_chiller) = now.recovery.links(now.ambient_k);
         [
             LinkState::conductance(now.htc_rate_w_k),
             LinkState::conductance(now.chiller_rate_w_k),
@@ -255,7 +252,10 @@ impl Assembly {
 
     /// Share of the condenser heat by which the thermal battery gives less.
     fn thermal_battery_share(now: &LinkConditions) -> f64 {
-        now.branches_w_k[Branch::ThermalBatteryHtc as usize] / now.htc_rate_w_k
+        thermal_battery::condenser_share(
+            now.branches_w_k[Branch::ThermalBatteryHtc as usize],
+            now.htc_rate_w_k,
+        )
     }
 
     /// Enters the heat flows of all links at the end of a step.
@@ -342,15 +342,5 @@ fn branch_state(branch: Branch, now: &LinkConditions) -> LinkState {
         Branch::AmbientHtc => LinkState::to_fixed(conductance_w_k, now.ambient_k),
         Branch::AmbientChiller => LinkState::from_fixed(conductance_w_k, now.ambient_k),
         _ => LinkState::conductance(conductance_w_k),
-    }
-}
-
-fn recovery_states(now: &LinkConditions) -> (LinkState, LinkState) {
-    if now.recovery_meets_chiller {
-        let to_chiller =
-            LinkState { offset_k: -RECOVERY_APPROACH_K, ..LinkState::conductance(now.recovery_w_k) };
-        (LinkState::OPEN, to_chiller)
-    } else {
-        (LinkState::to_fixed(now.recovery_w_k, now.ambient_k), LinkState::OPEN)
     }
 }

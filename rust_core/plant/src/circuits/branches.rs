@@ -2,8 +2,8 @@
 
 use crate::command::{Connection, Demand, Member};
 use crate::components::cabin::Ventilation;
+use crate::components::coolant_loop::{BranchShares, ClosedBranches, LoopParameters};
 use crate::components::heat_exchanger::{counterflow_conductance_w_k, inlet_conductance_w_k};
-use crate::config::coolant::{BranchShares, ClosedBranches, LoopParameters};
 use crate::config::vehicle::VehicleParameters;
 use crate::numerics::elementary::fused;
 use std::array::from_fn;

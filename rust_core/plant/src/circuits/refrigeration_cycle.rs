@@ -1,17 +1,38 @@
 //! Equations of the quasi-steady vapour-compression cycle, for given saturation temperatures and speed.
 
-use crate::components::compressor::soft_floor;
+use crate::components::compressor::{CompressorParameters, soft_floor};
 use crate::components::heat_exchanger::inlet_conductance_w_k;
 use crate::components::refrigerant_exchanger::approach_limited_k;
-use crate::config::refrigeration::RefrigerationParameters;
 use crate::config::{Celsius, Violation};
 use crate::media::refrigerant::{CondensingIsobar, RefrigerantTable};
 use crate::numerics::dual::Real;
+use crate::parameters;
 
 /// Isentropic work below which the cycle is continued smoothly [J/kg]; far below the lowest pressure ratio.
 const WORK_KNEE_J_KG: f64 = 500.0;
 
 const PASCAL_PER_BAR: f64 = 1e5;
+
+parameters! {
+    /// Refrigerant loop: compressor, condenser, expansion, evaporator.
+    pub struct RefrigerationParameters {
+        /// Condenser conductance, refrigerant to HTC coolant [W/K].
+        condenser_ua_w_k: f64 = 50.0 .. 10000.0,
+        /// Evaporator (chiller) conductance, coolant to refrigerant [W/K].
+        evaporator_ua_w_k: f64 = 50.0 .. 10000.0,
+        /// Superheat that the expansion valve holds where the coolant allows it [K].
+        superheat_k: f64 = 0.5 .. 10.0,
+        /// Subcooling at the condenser outlet where the coolant allows it [K].
+        subcooling_k: f64 = 0.0 .. 10.0,
+        /// Condensing pressure that must not be exceeded [bar] (paper section 2.3: 30 bar).
+        maximum_pressure_bar: f64 = 5.0 .. 45.0,
+        /// Suction pressure that must not be undercut [bar], the low-pressure guard of the evaporator.
+        minimum_suction_pressure_bar: f64 = 0.2 .. 3.0,
+        ;
+        /// The electrically driven compressor.
+        compressor: CompressorParameters,
+    }
+}
 
 /// Parameters and property table, with the limits as saturation temperatures.
 #[derive(Debug, Clone, PartialEq)]

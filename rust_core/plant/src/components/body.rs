@@ -1,9 +1,23 @@
 //! Longitudinal dynamics of the body.
 
-use crate::config::powertrain::BodyParameters;
+use crate::parameters;
 
 /// Standard gravity as used by WLTP road-load work [m/s2].
 const GRAVITY_M_S2: f64 = 9.81;
+
+parameters! {
+    /// Longitudinal dynamics.
+    pub struct BodyParameters {
+        /// Mass with driver [kg].
+        mass_kg: f64 = 300.0 .. 40000.0,
+        /// Rotating inertia as a share of the mass [-].
+        rotating_mass_share: f64 = 0.0 .. 0.3,
+        /// Drag coefficient times frontal area [m2].
+        drag_area_m2: f64 = 0.1 .. 10.0,
+        /// Rolling resistance coefficient [-].
+        rolling_resistance_coefficient: f64 = 0.001 .. 0.05,
+    }
+}
 
 /// Mean powers over a step with linearly changing speed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -1,14 +1,22 @@
-//! Physical components, one a file: parameters plus pure functions.
+//! Physical components, one a file: parameters, state and equations.
 
 pub mod ambient_exchanger;
 pub mod battery;
+pub mod battery_tables;
 pub mod body;
 pub mod cabin;
 pub mod compressor;
+pub mod coolant_loop;
+pub mod exhaust_recovery;
 pub mod heat_exchanger;
+mod hose;
 pub mod motor;
+pub mod pid;
 pub mod powertrain;
+pub mod ptc;
 pub mod pump;
 pub mod refrigerant_exchanger;
+pub mod thermal_battery;
+pub mod thermal_switch;
 pub mod transmission;
 pub mod underbody_plate;

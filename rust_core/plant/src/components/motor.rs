@@ -1,9 +1,31 @@
 //! Motor and inverter, treated as one.
 
-use crate::config::powertrain::MotorParameters;
+use crate::parameters;
 
 /// Below this speed the vehicle counts as standing [m/s].
 pub const STANDSTILL_SPEED_M_S: f64 = 0.05;
+
+parameters! {
+    /// Motor and inverter: losses, one thermal mass.
+    pub struct MotorParameters {
+        /// Loss whenever the vehicle moves [W].
+        constant_loss_w: f64 = 0.0 .. 5000.0,
+        /// Loss per vehicle speed [W/(m/s)].
+        speed_loss_w_s_m: f64 = 0.0 .. 500.0,
+        /// Loss per shaft power [-].
+        proportional_loss: f64 = 0.0 .. 0.5,
+        /// Loss per squared shaft power [1/W].
+        quadratic_loss_per_w: f64 = 0.0 .. 0.00001,
+        /// Heat capacity of motor and inverter [J/K].
+        heat_capacity_j_k: f64 = 1000.0 .. 1000000.0,
+        /// Conductance to ambient at standstill [W/K].
+        ambient_conductance_w_k: f64 = 0.0 .. 200.0,
+        /// Its increase with vehicle speed [W/K per m/s].
+        ambient_conductance_per_speed_w_s_k_m: f64 = 0.0 .. 20.0,
+        /// Coolant jacket conductance [W/K].
+        coolant_ua_w_k: f64 = 1.0 .. 5000.0,
+    }
+}
 
 impl MotorParameters {
     /// Loss of motor and inverter at a shaft power [W].

@@ -1,6 +1,20 @@
 //! From wheel power to electrical power and back: transmission and motor in series.
 
-use crate::config::powertrain::{MotorParameters, RegenerationParameters, TransmissionParameters};
+use super::motor::MotorParameters;
+use super::transmission::TransmissionParameters;
+use crate::parameters;
+
+parameters! {
+    /// Regenerative braking at the wheels; the battery's charge limit comes on top.
+    pub struct RegenerationParameters {
+        /// Largest share of the braking power that the motor takes [-].
+        maximum_share: f64 = 0.0 .. 1.0,
+        /// Largest braking power of the motor, at the wheels [W].
+        maximum_wheel_power_w: f64 = 0.0 .. 500000.0,
+        /// Speed below which recuperation fades linearly to zero [m/s].
+        fade_speed_m_s: f64 = 0.1 .. 10.0,
+    }
+}
 
 /// Power flow through the powertrain during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -1,11 +1,26 @@
 //! Coolant pump under a PID that follows the flow demand (paper section 2.3).
 
-use crate::config::coolant::PumpParameters;
-use crate::control::pid::IncrementalPid;
+use super::pid::{IncrementalPid, PidParameters};
+use crate::parameters;
 use serde::{Deserialize, Serialize};
 
 /// Time constant of the coolant column [s] (assumed; about a second for a loop of 10 m and 0.1 bar).
 const FLOW_TIME_CONSTANT_S: f64 = 1.0;
+
+parameters! {
+    /// Circulation pump under a PID that follows the flow demand.
+    pub struct PumpParameters {
+        /// Largest coolant flow [kg/s].
+        maximum_flow_kg_s: f64 = 0.01 .. 5.0,
+        /// Smallest coolant flow while the vehicle is on [kg/s].
+        minimum_flow_kg_s: f64 = 0.001 .. 1.0,
+        /// Electrical power at the largest flow; it warms the coolant [W].
+        maximum_power_w: f64 = 0.0 .. 2000.0,
+        ;
+        /// Controller on the flow.
+        pid: PidParameters,
+    }
+}
 
 /// Flow and controller memory of a pump.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

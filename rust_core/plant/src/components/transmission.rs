@@ -1,7 +1,30 @@
 //! Transmission and driveline.
 
-use crate::config::powertrain::TransmissionParameters;
+use crate::config::Celsius;
 use crate::numerics::elementary;
+use crate::parameters;
+
+parameters! {
+    /// Transmission and driveline: losses that depend on the oil temperature, one thermal mass.
+    pub struct TransmissionParameters {
+        /// Load-proportional (mesh) loss [-].
+        mesh_loss_share: f64 = 0.0 .. 0.2,
+        /// Spin-loss force at the wheels at the reference oil temperature [N].
+        spin_loss_force_n: f64 = 0.0 .. 500.0,
+        /// Oil temperature of that force [degC].
+        spin_loss_reference_degc: Celsius = 0.0 .. 100.0,
+        /// Temperature rise that divides the spin loss by e [K].
+        viscosity_temperature_k: f64 = 5.0 .. 200.0,
+        /// Heat capacity of housing, gears and oil [J/K].
+        heat_capacity_j_k: f64 = 1000.0 .. 1000000.0,
+        /// Conductance to ambient at standstill [W/K].
+        ambient_conductance_w_k: f64 = 0.0 .. 200.0,
+        /// Its increase with vehicle speed [W/K per m/s].
+        ambient_conductance_per_speed_w_s_k_m: f64 = 0.0 .. 20.0,
+        /// Oil-cooler conductance [W/K].
+        coolant_ua_w_k: f64 = 1.0 .. 5000.0,
+    }
+}
 
 impl TransmissionParameters {
     /// Load-independent loss: churning of oil whose viscosity falls with temperature [W].

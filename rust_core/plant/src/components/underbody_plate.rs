@@ -1,11 +1,25 @@
 //! The plate between battery and underbody air, equations (1) to (5).
 
-use crate::config::battery::PlateParameters;
 use crate::media::air::AirProperties;
 use crate::numerics::elementary;
+use crate::parameters;
 
 /// Reynolds number of transition on a flat plate (Bergman et al., section 7.2).
 const TRANSITION_REYNOLDS: f64 = 5e5;
+
+parameters! {
+    /// Plate between pack and underbody air, equations (1) to (5).
+    pub struct PlateParameters {
+        /// Length along the flow [m].
+        length_m: f64 = 0.1 .. 20.0,
+        /// Width [m].
+        width_m: f64 = 0.1 .. 4.0,
+        /// Conductance between pack and plate [W/K].
+        pack_conductance_w_k: f64 = 0.01 .. 1000.0,
+        /// Natural-convection conductance of the plate at standstill [W/K].
+        natural_convection_w_k: f64 = 0.0 .. 100.0,
+    }
+}
 
 /// Mean convection coefficient of parallel flow over a flat plate [W/(m2 K)].
 ///

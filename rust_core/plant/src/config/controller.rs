@@ -1,9 +1,9 @@
 //! Parameters of the rule-based heat pump control unit (HPCU).
 
-use super::coolant::PidParameters;
 use super::library::{self, Kind, Override};
 use super::scenario::{Strategy, StrategyChanges};
 use super::{Celsius, Validate, Violation, check_range};
+use crate::components::pid::PidParameters;
 use crate::error::{PlantError, PlantResult};
 use crate::parameters;
 use serde::Deserialize;

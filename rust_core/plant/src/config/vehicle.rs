@@ -1,14 +1,20 @@
 //! One complete vehicle.
 
-use super::battery::BatteryParameters;
-use super::cabin::CabinParameters;
-use super::coolant::{
-    AmbientExchangerParameters, ChillerParameters, HtcParameters, PlantControlParameters, PtcParameters,
-    ThermalBatteryParameters,
-};
-use super::powertrain::{BodyParameters, MotorParameters, RegenerationParameters, TransmissionParameters};
-use super::refrigeration::RefrigerationParameters;
 use super::{Validate, Violation};
+use crate::circuits::refrigeration_cycle::RefrigerationParameters;
+use crate::components::ambient_exchanger::AmbientExchangerParameters;
+use crate::components::battery::BatteryParameters;
+use crate::components::body::BodyParameters;
+use crate::components::cabin::CabinParameters;
+use crate::components::coolant_loop::{ChillerParameters, HtcParameters};
+use crate::components::motor::MotorParameters;
+use crate::components::pid::PidParameters;
+use crate::components::powertrain::RegenerationParameters;
+use crate::components::ptc::PtcParameters;
+use crate::components::thermal_battery::ThermalBatteryParameters;
+use crate::components::thermal_switch::SwitchParameters;
+use crate::components::transmission::TransmissionParameters;
+use crate::parameters;
 use serde::{Deserialize, Serialize};
 
 /// All parameters of a vehicle, one field a section of its file.
@@ -45,6 +51,19 @@ pub struct VehicleParameters {
     pub refrigeration: RefrigerationParameters,
     /// The plant's own controls.
     pub controls: PlantControlParameters,
+}
+
+parameters! {
+    /// Controls that belong to the plant itself.
+    pub struct PlantControlParameters {
+        /// Constant 12 V load without pumps, blower and fan [W].
+        auxiliary_power_w: f64 = 0.0 .. 5000.0,
+        ;
+        /// Thermal switches.
+        thermal_switch: SwitchParameters,
+        /// Compressor power against condensing pressure (`PID_pressureControl`), W per bar.
+        pressure_pid: PidParameters,
+    }
 }
 
 impl Validate for VehicleParameters {

@@ -3,13 +3,13 @@
 //! Three purposes: constant coolant flow demands, connections of the components, compressor demand. It reads
 //! the plant's temperatures as a real one does and has no way to the plant but its [`Demand`].
 
-use super::pid::{ResetGains, ResetPid};
 use crate::circuits::assembly::NODES;
 use crate::circuits::branches::Branch;
 use crate::command::{Connection, Demand, Member};
+use crate::components::pid::PidParameters;
+use crate::components::pid::{ResetGains, ResetPid};
 use crate::config::Celsius;
 use crate::config::controller::{Controller, HpcuParameters};
-use crate::config::coolant::PidParameters;
 use crate::config::scenario::{BatteryTreatment, ClimateControl, Strategy};
 use crate::numerics::thermal_network::Node;
 use crate::plant::{CONTROL_PERIOD_S, Plant};

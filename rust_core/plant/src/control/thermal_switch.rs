@@ -1,8 +1,8 @@
 //! Thermal switches: conductances under a PID that tracks the heat flow asked for (paper section 2.3).
 
-use super::pid::IncrementalPid;
 use crate::circuits::branches::{BRANCH_PLACES, BranchValues};
-use crate::config::coolant::PidParameters;
+use crate::components::pid::IncrementalPid;
+use crate::components::pid::PidParameters;
 use serde::{Deserialize, Serialize};
 use std::array::from_fn;
 

@@ -1,10 +1,10 @@
 //! The plant's own controls, once a control period: connections, pumps, switches, PTC, condensing pressure.
 
-use super::pid::ResetGains;
 use crate::circuits::assembly::NODES;
 use crate::circuits::branches::{self, BRANCH_PLACES, Branch, BranchFlows, BranchTemperatures, BranchValues};
 use crate::command::Demand;
 use crate::components::cabin::Ventilation;
+use crate::components::pid::ResetGains;
 use crate::components::pump;
 use crate::config::vehicle::VehicleParameters;
 use crate::numerics::thermal_network::Node;

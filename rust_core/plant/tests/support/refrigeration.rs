@@ -1,8 +1,9 @@
 //! A refrigeration loop with round numbers, shared by tests and examples; not a vehicle of the paper.
 
 use hp_plant::circuits::refrigeration_cycle::RefrigerationCycle;
+use hp_plant::circuits::refrigeration_cycle::RefrigerationParameters;
 use hp_plant::circuits::refrigeration_loop::{LoopBoundary, SupplyLimit};
-use hp_plant::config::refrigeration::{CompressorParameters, RefrigerationParameters};
+use hp_plant::components::compressor::CompressorParameters;
 use hp_plant::media::refrigerant::RefrigerantTable;
 
 /// Parameters of the test loop.

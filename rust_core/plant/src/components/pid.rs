@@ -1,7 +1,19 @@
 //! PID controllers.
 
-use crate::config::coolant::PidParameters;
+use crate::parameters;
 use serde::{Deserialize, Serialize};
+
+parameters! {
+    /// PID gains; the derivative acts on the measurement. Units follow from the controller's use.
+    pub struct PidParameters {
+        /// Proportional gain [output unit per input unit].
+        proportional: f64 = 0.0 .. 1000000.0,
+        /// Integral gain [output unit per input unit and second].
+        integral: f64 = 0.0 .. 1000000.0,
+        /// Derivative gain [output unit seconds per input unit].
+        derivative: f64 = 0.0 .. 1000000.0,
+    }
+}
 
 /// Memory of a PID with external reset.
 ///
@@ -64,10 +76,10 @@ impl ResetPid {
 /// PID in incremental form: the output is the state, so its limits are its anti-windup.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct IncrementalPid {
-    pub(super) output: f64,
-    pub(super) last_error: f64,
-    pub(super) last_change: f64,
-    pub(super) started: bool,
+    pub(crate) output: f64,
+    pub(crate) last_error: f64,
+    pub(crate) last_change: f64,
+    pub(crate) started: bool,
 }
 
 impl IncrementalPid {

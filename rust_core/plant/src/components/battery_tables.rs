@@ -1,71 +1,7 @@
-//! Parameters of the battery.
+//! Tables of a cell: open-circuit voltage, equivalent circuit, usable capacity.
 
-use super::{Validate, Violation, check_range};
-use crate::parameters;
+use crate::config::{Validate, Violation, check_range};
 use serde::{Deserialize, Serialize};
-
-parameters! {
-    /// Battery pack: equivalent circuit per string, lumped thermal mass, exterior plate.
-    pub struct BatteryParameters {
-        /// Cells in series in a string.
-        cells_in_series: u32 = 1 .. 1000,
-        /// Strings in parallel.
-        strings_in_parallel: u32 = 1 .. 100,
-        /// Capacity of one cell at 25 degC [Ah].
-        cell_capacity_ah: f64 = 0.5 .. 500.0,
-        /// Mass of one cell with its share of the module [kg].
-        cell_mass_kg: f64 = 0.01 .. 10.0,
-        /// Specific heat of the cell [J/(kg K)].
-        cell_specific_heat_j_kg_k: f64 = 300.0 .. 3000.0,
-        /// Factor on the resistance tables [-].
-        resistance_scale: f64 = 0.1 .. 10.0,
-        /// Lowest cell voltage under load [V].
-        minimum_cell_voltage_v: f64 = 1.0 .. 3.6,
-        /// Highest cell voltage when charged [V].
-        maximum_cell_voltage_v: f64 = 3.0 .. 5.0,
-        /// Coolant plate conductance [W/K].
-        coolant_ua_w_k: f64 = 1.0 .. 10000.0,
-        ;
-        /// Charge-rate limit against temperature.
-        charge_limit: RateLimitParameters,
-        /// Discharge-rate limit against temperature.
-        discharge_limit: RateLimitParameters,
-        /// Exterior plate under the vehicle.
-        plate: PlateParameters,
-        /// Open-circuit voltage against state of charge.
-        open_circuit_voltage: OpenCircuitVoltageTable,
-        /// Resistances and capacitance against temperature and state of charge.
-        circuit: CircuitTable,
-        /// Share of the capacity that can be used against temperature, C_eff of equation (6).
-        usable_capacity: UsableCapacityTable,
-    }
-}
-
-parameters! {
-    /// A C-rate limit that rises linearly with temperature between zero and a largest rate.
-    pub struct RateLimitParameters {
-        /// Rate at 0 degC [1/h]; may be negative, the limit itself never is.
-        rate_at_zero_degc_per_h: f64 = -20.0 .. 100.0,
-        /// Rise with temperature [1/h per K].
-        rate_rise_per_h_k: f64 = 0.0 .. 10.0,
-        /// Largest rate [1/h].
-        maximum_rate_per_h: f64 = 0.0 .. 100.0,
-    }
-}
-
-parameters! {
-    /// Plate between pack and underbody air, equations (1) to (5).
-    pub struct PlateParameters {
-        /// Length along the flow [m].
-        length_m: f64 = 0.1 .. 20.0,
-        /// Width [m].
-        width_m: f64 = 0.1 .. 4.0,
-        /// Conductance between pack and plate [W/K].
-        pack_conductance_w_k: f64 = 0.01 .. 1000.0,
-        /// Natural-convection conductance of the plate at standstill [W/K].
-        natural_convection_w_k: f64 = 0.0 .. 100.0,
-    }
-}
 
 /// OCV(SOC) of one cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
