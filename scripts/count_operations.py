@@ -1,6 +1,6 @@
 """Count what a plant step executes: arithmetic, moves and branches, by the program that callgrind ran.
 
-Build the workload with ``cargo build --release -p hp_plant --example step_cost``, then run
+Build the workload with ``cargo build --release -p hp_trip --example step_cost``, then run
 ``python scripts/count_operations.py heating`` (or ``random``). Needs valgrind and objdump on an x86-64 Linux.
 """
 

@@ -5,7 +5,7 @@ use hp_episode::timing;
 use hp_plant::command::{ACTUATOR_COUNT, Command, Demand};
 use hp_plant::config::library::Override;
 use hp_plant::signals;
-use hp_plant::simulation;
+use hp_trip::{experiment, run, summary};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -23,7 +23,7 @@ fn parse_overrides(overrides: &[String]) -> PyResult<Vec<Override>> {
     overrides.iter().map(|text| Override::parse(text).map_err(to_python)).collect()
 }
 
-fn to_dict<'py>(py: Python<'py>, summary: &hp_plant::summary::Summary) -> PyResult<Bound<'py, PyDict>> {
+fn to_dict<'py>(py: Python<'py>, summary: &summary::Summary) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for (name, value) in summary.values() {
         dict.set_item(name, value)?;
@@ -34,7 +34,7 @@ fn to_dict<'py>(py: Python<'py>, summary: &hp_plant::summary::Summary) -> PyResu
 /// A scenario with vehicle, drive cycle and rule-based controller, ready to run.
 #[pyclass(frozen, module = "hp_gym._core")]
 pub struct Experiment {
-    inner: simulation::Experiment,
+    inner: experiment::Experiment,
 }
 
 #[pymethods]
@@ -48,7 +48,7 @@ impl Experiment {
         substeps: u32,
     ) -> PyResult<Self> {
         let overrides = parse_overrides(&overrides)?;
-        let mut inner = simulation::Experiment::load(scenario, controller, &overrides).map_err(to_python)?;
+        let mut inner = experiment::Experiment::load(scenario, controller, &overrides).map_err(to_python)?;
         if !(1..=1000).contains(&substeps) {
             return Err(PyValueError::new_err(format!(
                 "substeps is {substeps}, but must be between 1 and 1000"
@@ -101,7 +101,7 @@ impl Experiment {
     /// Limits that a run is judged by.
     fn limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let limits = PyDict::new(py);
-        for (name, value) in hp_plant::summary::limits(&self.inner.plant.vehicle) {
+        for (name, value) in summary::limits(&self.inner.plant.vehicle) {
             limits.set_item(name, value)?;
         }
         Ok(limits)
@@ -154,7 +154,7 @@ enum Setting {
 #[pyclass(module = "hp_gym._core")]
 pub struct Run {
     experiment: Py<Experiment>,
-    inner: simulation::Run,
+    inner: run::Run,
     ended: Option<&'static str>,
 }
 
@@ -189,8 +189,7 @@ impl Run {
             )));
         }
         let experiment = self.experiment.borrow(py);
-        self.ended =
-            experiment.inner.step(&mut self.inner, &Command(command)).map(simulation::EndReason::name);
+        self.ended = experiment.inner.step(&mut self.inner, &Command(command)).map(run::EndReason::name);
         Ok(self.ended)
     }
 
@@ -215,7 +214,7 @@ pub fn totals<'py>(
 ) -> PyResult<Vec<Totals<'py>>> {
     let overrides = parse_overrides(&overrides)?;
     let results: Vec<_> = py.detach(|| {
-        let run = |name: &String| Ok(simulation::Experiment::load(name, None, &overrides)?.totals());
+        let run = |name: &String| Ok(experiment::Experiment::load(name, None, &overrides)?.totals());
         scenarios.par_iter().map(run).collect()
     });
     results
@@ -231,7 +230,7 @@ pub fn totals<'py>(
 #[pyfunction]
 #[pyo3(signature = (scenario, seed=None))]
 pub fn plant_step_seconds(py: Python<'_>, scenario: &str, seed: Option<u64>) -> PyResult<(f64, usize)> {
-    let experiment = simulation::Experiment::load(scenario, None, &[]).map_err(to_python)?;
+    let experiment = experiment::Experiment::load(scenario, None, &[]).map_err(to_python)?;
     let timed = py.detach(|| timing::compressor_on_steps(&experiment, seed));
     let (spent, steps) = timed.map_err(to_python)?;
     Ok((spent.as_secs_f64(), steps))

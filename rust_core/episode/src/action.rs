@@ -5,11 +5,11 @@ use hp_plant::command::{
     ACTUATOR_COUNT, ACTUATORS, BLOWER, Command, Connection, Demand, MAXIMUM_REQUEST_W, Member, RECIRCULATION,
     REQUESTS, Scale,
 };
-use hp_plant::control::heat_demand_commander;
 use hp_plant::error::{PlantError, PlantResult};
 use hp_plant::plant::{Disturbance, Plant};
-use hp_plant::simulation::Experiment;
 use hp_plant::state::State;
+use hp_trip::experiment::Experiment;
+use hp_trip::heat_demand_commander;
 
 /// Rows that an agent controls by default: six connections, PTC, compressor.
 pub const DEFAULT_ROWS: usize = 8;

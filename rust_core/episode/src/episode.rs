@@ -11,7 +11,8 @@ use crate::snapshot;
 use hp_plant::command::{ACTUATOR_COUNT, Command};
 use hp_plant::error::PlantResult;
 use hp_plant::signals::View;
-use hp_plant::simulation::{EndReason, Experiment, Run};
+use hp_trip::experiment::Experiment;
+use hp_trip::run::{EndReason, Run};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 

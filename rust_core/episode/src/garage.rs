@@ -1,12 +1,13 @@
 //! Vehicles, cycles and scenarios, each loaded once and shared by all episodes.
 
+use hp_plant::config::initial::InitialParameters;
 use hp_plant::config::library::Override;
-use hp_plant::config::scenario::{ClimateParameters, InitialParameters};
-use hp_plant::control::hpcu::Hpcu;
-use hp_plant::drive_cycle::DriveCycle;
 use hp_plant::error::PlantResult;
 use hp_plant::plant::Plant;
-use hp_plant::simulation::Experiment;
+use hp_trip::controllers::hpcu::Hpcu;
+use hp_trip::drive_cycle::DriveCycle;
+use hp_trip::experiment::Experiment;
+use hp_trip::scenario::ClimateParameters;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

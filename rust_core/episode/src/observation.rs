@@ -8,8 +8,8 @@ use hp_plant::error::{PlantError, PlantResult};
 use hp_plant::flows::Flow;
 use hp_plant::numerics::thermal_network::Node;
 use hp_plant::signals::{self, Signal, View};
-use hp_plant::simulation::Experiment;
 use hp_plant::{UNROLLED, unrolled};
+use hp_trip::experiment::Experiment;
 
 /// A row of an observation.
 #[derive(Debug, Clone)]

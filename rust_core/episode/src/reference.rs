@@ -7,7 +7,7 @@ use hp_plant::components::battery::BatteryState;
 use hp_plant::components::powertrain::Powertrain;
 use hp_plant::config::Celsius;
 use hp_plant::plant::{CONTROL_PERIOD_S, Disturbance, Plant};
-use hp_plant::simulation::Experiment;
+use hp_trip::experiment::Experiment;
 use serde::{Deserialize, Serialize};
 
 /// Temperature of battery, motor and oil on the reference trip.

@@ -6,9 +6,10 @@ use hp_plant::flows::Flow;
 use hp_plant::numerics::thermal_network::NodeValues;
 use hp_plant::parameters;
 use hp_plant::plant::{CONTROL_PERIOD_S, Disturbance, Plant};
-use hp_plant::simulation::{EndReason, Experiment, Run};
 use hp_plant::state::State;
-use hp_plant::summary::COMFORT_TEMPERATURE_DEGC;
+use hp_trip::experiment::Experiment;
+use hp_trip::run::{EndReason, Run};
+use hp_trip::summary::COMFORT_TEMPERATURE_DEGC;
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 

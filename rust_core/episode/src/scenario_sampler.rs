@@ -6,7 +6,7 @@ use hp_plant::config::library::{self, Kind};
 use hp_plant::config::{Celsius, Validate, Violation, check_range};
 use hp_plant::error::PlantResult;
 use hp_plant::parameters;
-use hp_plant::simulation::Experiment;
+use hp_trip::experiment::Experiment;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -206,7 +206,7 @@ impl Distribution {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hp_plant::config::scenario::ScenarioParameters;
+    use hp_trip::scenario::ScenarioParameters;
 
     fn drawn(name: &str) -> Vec<Trip> {
         let distribution = Distribution::load(name, &Garage::default()).expect("built in");

@@ -5,7 +5,8 @@ use crate::random::Random;
 use hp_plant::command::{ACTUATORS, Command};
 use hp_plant::error::PlantResult;
 use hp_plant::plant::StepRecord;
-use hp_plant::simulation::{Experiment, Run};
+use hp_trip::experiment::Experiment;
+use hp_trip::run::Run;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 

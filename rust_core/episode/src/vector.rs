@@ -9,7 +9,7 @@ use crate::reward::{PART_NAMES, Terms};
 use crate::setup::Source;
 use crate::threads::{Stretch, Threads};
 use hp_plant::error::{PlantError, PlantResult};
-use hp_plant::simulation::EndReason;
+use hp_trip::run::EndReason;
 use std::sync::{Mutex, PoisonError};
 
 /// Parts of a reward.

@@ -8,7 +8,6 @@ pub mod command;
 pub mod components;
 pub mod config;
 pub mod control;
-pub mod drive_cycle;
 pub mod error;
 pub mod flows;
 pub mod ledger;
@@ -16,9 +15,7 @@ pub mod media;
 pub mod numerics;
 pub mod plant;
 pub mod signals;
-pub mod simulation;
 pub mod state;
-pub mod summary;
 
 #[doc(hidden)]
 pub use numerics::elimination::MAXIMUM_OPERATIONS as UNROLLED;

@@ -11,8 +11,8 @@ use crate::components::battery::{Battery, BatteryStep, CircuitStep, PowerLimits}
 use crate::components::exhaust_recovery::{ExhaustRecovery, RecoveryTemperatures};
 use crate::components::pid::ResetPid;
 use crate::components::powertrain::Powertrain;
+use crate::config::initial::InitialParameters;
 use crate::config::library::{self, Kind, Override};
-use crate::config::scenario::InitialParameters;
 use crate::config::vehicle::VehicleParameters;
 use crate::control::thermal_switch::ThermalSwitches;
 use crate::control::vehicle_controls::{ControlGains, Period};

@@ -1,8 +1,7 @@
 //! Configuration: TOML files to typed, checked parameters.
 
-pub mod controller;
+pub mod initial;
 pub mod library;
-pub mod scenario;
 mod validate;
 pub mod vehicle;
 

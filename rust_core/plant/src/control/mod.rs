@@ -1,6 +1,4 @@
-//! Controllers: the plant's own switches and controls, the HPCU, schedules.
+//! The plant's own switches and controls.
 
-pub mod heat_demand_commander;
-pub mod hpcu;
 pub mod thermal_switch;
 pub(crate) mod vehicle_controls;

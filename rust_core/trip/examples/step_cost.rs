@@ -1,6 +1,6 @@
 //! Cost of a plant step, in time and, under callgrind, in instructions.
 //!
-//! `cargo run --release -p hp_plant --example step_cost -- heating` replays the compressor-on steps of the paper's
+//! `cargo run --release -p hp_trip --example step_cost -- heating` replays the compressor-on steps of the paper's
 //! nine scenarios with the HPCU; `random` drives all built-in scenarios with random actions each second. A second
 //! argument is the number of repetitions; of each stretch the fastest counts. For instructions by function:
 //! `valgrind --tool=callgrind --toggle-collect='*measured*' target/release/examples/step_cost heating 1`.

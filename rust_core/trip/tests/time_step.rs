@@ -1,7 +1,7 @@
 //! Step size: controllers held at 1 s, the plant integrated finer and finer.
 
 use hp_plant::flows::Flow;
-use hp_plant::simulation::Experiment;
+use hp_trip::experiment::Experiment;
 use rayon::prelude::*;
 
 const CASES: [&str; 9] =

@@ -1,72 +1,12 @@
 //! Parameters of the rule-based heat pump control unit (HPCU).
 
-use super::library::{self, Kind, Override};
-use super::scenario::{Strategy, StrategyChanges};
-use super::{Celsius, Validate, Violation, check_range};
-use crate::components::pid::PidParameters;
-use crate::error::{PlantError, PlantResult};
-use crate::parameters;
+use crate::controllers::hpcu::HpcuParameters;
+use crate::strategy::{Strategy, StrategyChanges};
+use hp_plant::config::library::{self, Kind, Override};
+use hp_plant::config::{Celsius, Validate, Violation, check_range};
+use hp_plant::error::{PlantError, PlantResult};
 use serde::Deserialize;
 use toml::{Table, Value};
-
-parameters! {
-    /// HPCU of paper section 2.4.
-    pub struct HpcuParameters {
-        /// Cabin target (paper: 22 degC) [degC].
-        cabin_set_point_degc: Celsius = 10.0 .. 30.0,
-        /// Up to the cabin target the whole heat flow is requested; this far beyond it, none [K].
-        cabin_request_band_k: f64 = 0.1 .. 10.0,
-        /// Deviation from the cabin target that switches between heating and air conditioning [K] (ours).
-        mode_switch_deviation_k: f64 = 0.5 .. 10.0,
-        /// HTC target of the compressor control (paper: 90 degC) [degC].
-        htc_set_point_degc: Celsius = 25.0 .. 95.0,
-        /// Chiller target of the compressor control (paper: -10 degC) [degC].
-        chiller_set_point_degc: Celsius = -40.0 .. 20.0,
-        /// Chiller target while the cabin is cooled [degC] (ours).
-        cooling_chiller_set_point_degc: Celsius = -10.0 .. 20.0,
-        /// Constant flow demand for the HTC [kg/s].
-        htc_flow_kg_s: f64 = 0.001 .. 5.0,
-        /// Constant flow demand for the chiller circuit [kg/s].
-        chiller_flow_kg_s: f64 = 0.001 .. 5.0,
-        /// Constant blower level [-].
-        blower_level: f64 = 0.0 .. 1.0,
-        /// Recirculated share while heating [-] (paper: ambient air only, 0).
-        heating_recirculation: f64 = 0.0 .. 0.95,
-        /// Recirculated share while cooling [-] (ours).
-        cooling_recirculation: f64 = 0.0 .. 0.95,
-        /// The PTC may help while the cabin is at least this far below its target [K] (paper: always).
-        ptc_from_deviation_k: f64 = -100.0 .. 100.0,
-        ;
-        /// Thresholds of the battery's connection.
-        battery: BatteryThresholds,
-        /// Compressor power against cabin temperature, W per K.
-        cabin_pid: PidParameters,
-        /// Compressor power against battery temperature, W per K.
-        battery_pid: PidParameters,
-        /// Compressor power against HTC supply, W per K.
-        htc_pid: PidParameters,
-        /// Compressor power against chiller supply, W per K.
-        chiller_pid: PidParameters,
-    }
-}
-
-parameters! {
-    /// Battery thresholds of the HPCU.
-    pub struct BatteryThresholds {
-        /// The battery is heated up to here (paper: 20 degC) [degC].
-        heat_up_to_degc: Celsius = -20.0 .. 50.0,
-        /// Heating starts again this far below [K].
-        heating_hysteresis_k: f64 = 0.0 .. 10.0,
-        /// The battery is cooled above here (paper: 30 degC) [degC].
-        cool_above_degc: Celsius = 0.0 .. 60.0,
-        /// Cooling ends this far below [K].
-        cooling_hysteresis_k: f64 = 0.0 .. 10.0,
-        /// Used as a heat source, the battery is cooled down to here (paper section 2.6: 0 degC) [degC].
-        source_down_to_degc: Celsius = -40.0 .. 40.0,
-        /// Above that by this much, the whole heat is requested; below it fades to none [K].
-        source_request_band_k: f64 = 0.1 .. 10.0,
-    }
-}
 
 /// A controller file: parameters, and what changes with the ambient temperature (ours).
 #[derive(Debug, Clone, PartialEq)]
@@ -151,8 +91,8 @@ fn not_a_list(name: &str, key: &str) -> PlantError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::scenario::BatteryTreatment;
-    use crate::simulation::Experiment;
+    use crate::experiment::Experiment;
+    use crate::strategy::BatteryTreatment;
 
     fn loaded(bands: &str) -> PlantResult<Controller> {
         let file = tempfile::Builder::new().suffix(".toml").tempfile().expect("a temporary file");

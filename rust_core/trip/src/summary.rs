@@ -1,10 +1,10 @@
 //! Totals of a run.
 
-use crate::config::ZERO_CELSIUS_K;
-use crate::config::vehicle::VehicleParameters;
-use crate::flows::{FLOW_COUNT, Flow, Flows};
-use crate::plant::{CONTROL_PERIOD_S, Disturbance, Plant, StepRecord};
-use crate::state::State;
+use hp_plant::config::ZERO_CELSIUS_K;
+use hp_plant::config::vehicle::VehicleParameters;
+use hp_plant::flows::{FLOW_COUNT, Flow, Flows};
+use hp_plant::plant::{CONTROL_PERIOD_S, Disturbance, Plant, StepRecord};
+use hp_plant::state::State;
 use serde::{Deserialize, Serialize};
 
 /// Joule in a kilowatt-hour.
@@ -89,7 +89,7 @@ impl Summary {
         disturbance: &Disturbance,
     ) {
         let nodes = &plant.assembly.nodes;
-        let degc = |state: &State, node: crate::numerics::thermal_network::Node| {
+        let degc = |state: &State, node: hp_plant::numerics::thermal_network::Node| {
             state.temperatures_k[node.index()] - ZERO_CELSIUS_K
         };
         self.energies_j.accumulate(&record.flows, CONTROL_PERIOD_S);

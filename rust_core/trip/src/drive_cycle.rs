@@ -1,7 +1,7 @@
 //! Drive cycles: speed against time.
 
-use crate::config::library::{self, Kind};
-use crate::error::{PlantError, PlantResult};
+use hp_plant::config::library::{self, Kind};
+use hp_plant::error::{PlantError, PlantResult};
 use std::sync::Arc;
 
 /// Speed at every full second. Parts of a cycle share its speeds.
@@ -59,7 +59,7 @@ impl DriveCycle {
         }
         let (times, speeds): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
         let end_s = times[times.len() - 1].floor() as usize;
-        let table = crate::numerics::interpolation::LinearTable::new(&times, &speeds);
+        let table = hp_plant::numerics::interpolation::LinearTable::new(&times, &speeds);
         Ok(Self {
             name: name.into(),
             all_speeds_m_s: (0..=end_s).map(|second| table.at(second as f64) / 3.6).collect(),

@@ -1,4 +1,4 @@
-//! Plant step and its expensive parts: `cargo bench -p hp_plant`.
+//! Plant step and its expensive parts: `cargo bench -p hp_trip`.
 //!
 //! Step times are per second driven: criterion's "thrpt" is steps per second. Instruction counts, which a busy machine
 //! does not disturb, come from `examples/step_cost.rs`.
@@ -13,7 +13,8 @@ use hp_plant::circuits::refrigeration_loop::{LoopDemand, SupplyLimit, WarmStart}
 use hp_plant::components::exhaust_recovery::ExhaustRecovery;
 use hp_plant::numerics::thermal_network::NodeValues;
 use hp_plant::plant::StepRecord;
-use hp_plant::simulation::{Experiment, Run};
+use hp_trip::experiment::Experiment;
+use hp_trip::run::Run;
 use std::hint::black_box;
 use workload::{Segment, compressor_on_segments, random_segments};
 

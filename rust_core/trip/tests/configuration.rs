@@ -1,8 +1,8 @@
 //! Configuration: what is built in loads, what is wrong is named.
 
 use hp_plant::config::library::{self, Kind, Override};
-use hp_plant::drive_cycle::DriveCycle;
-use hp_plant::simulation::Experiment;
+use hp_trip::drive_cycle::DriveCycle;
+use hp_trip::experiment::Experiment;
 
 fn error_with(assignment: &str) -> String {
     let overrides = [Override::parse(assignment).expect("assignment")];

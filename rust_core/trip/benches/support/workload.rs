@@ -2,9 +2,10 @@
 
 use hp_plant::command::{ACTUATORS, COMPRESSOR, Command, Connection, Demand, Member, RECIRCULATION, Scale};
 use hp_plant::config::library::{self, Kind};
-use hp_plant::control::heat_demand_commander;
 use hp_plant::plant::StepRecord;
-use hp_plant::simulation::{Experiment, Run};
+use hp_trip::experiment::Experiment;
+use hp_trip::heat_demand_commander;
+use hp_trip::run::Run;
 use std::hint::black_box;
 use std::sync::Arc;
 

@@ -1,0 +1,4 @@
+//! Rule-based controllers.
+
+pub mod file;
+pub mod hpcu;

@@ -1,0 +1,119 @@
+//! Whole runs: a scenario with its vehicle, cycle and controller, from start to arrival.
+
+use crate::controllers::file::Controller;
+use crate::controllers::hpcu::Hpcu;
+use crate::drive_cycle::DriveCycle;
+use crate::heat_demand_commander;
+use crate::run::Run;
+use crate::scenario::{ClimateParameters, ScenarioParameters};
+use crate::summary::Summary;
+use hp_plant::command::Command;
+use hp_plant::config::initial::InitialParameters;
+use hp_plant::config::library::{self, Kind, Override};
+use hp_plant::error::{PlantError, PlantResult};
+use hp_plant::media::air::AirProperties;
+use hp_plant::plant::{Disturbance, Plant};
+use std::sync::Arc;
+
+/// A scenario, loaded and ready to run.
+#[derive(Debug, Clone)]
+pub struct Experiment {
+    /// Scenario as its file gives it; climate and initial state of this run are those below.
+    pub scenario: Arc<ScenarioParameters>,
+    /// Climate of this run.
+    pub climate: ClimateParameters,
+    /// Ambient air of that climate, worked out once.
+    pub air: AirProperties,
+    /// Initial state of this run.
+    pub initial: InitialParameters,
+    /// Vehicle.
+    pub plant: Arc<Plant>,
+    /// Drive cycle.
+    pub cycle: DriveCycle,
+    /// Name of the controller's file.
+    pub controller: Arc<str>,
+    /// What that file says.
+    pub rules: Arc<Controller>,
+    /// Rule-based controller of this scenario.
+    pub hpcu: Arc<Hpcu>,
+}
+
+impl Experiment {
+    /// Loads a scenario; overrides are prefixed with `vehicle.`, `controller.` or `scenario.`.
+    ///
+    /// # Errors
+    /// Anything wrong in one of its files or in an override.
+    pub fn load(scenario: &str, controller: Option<&str>, overrides: &[Override]) -> PlantResult<Self> {
+        let part = |prefix: &str| -> Vec<Override> {
+            let stripped = |change: &Override| {
+                let key = change.key.strip_prefix(prefix)?.strip_prefix('.')?.to_owned();
+                Some(Override { key, value: change.value.clone() })
+            };
+            overrides.iter().filter_map(stripped).collect()
+        };
+        let known = ["vehicle.", "controller.", "scenario."];
+        if let Some(other) = overrides.iter().find(|change| !known.iter().any(|k| change.key.starts_with(k)))
+        {
+            return Err(PlantError::InvalidArgument {
+                what: "override key".into(),
+                value: format!("`{}`", other.key),
+                allowed: format!("must begin with one of {}", known.join(", ")),
+            });
+        }
+        let scenario: ScenarioParameters = library::load(Kind::Scenario, scenario, &part("scenario"))?;
+        let controller = controller.unwrap_or(&scenario.controller).to_owned();
+        let rules = Arc::new(Controller::load(&controller, &part("controller"))?);
+        Ok(Self {
+            plant: Arc::new(Plant::load(&scenario.vehicle, &part("vehicle"))?),
+            cycle: DriveCycle::load(&scenario.cycle)?,
+            controller: controller.into(),
+            hpcu: Arc::new(Hpcu::of(&rules, &scenario.strategy, scenario.climate.ambient_temperature_degc)),
+            rules,
+            air: scenario.climate.air(),
+            climate: scenario.climate.clone(),
+            initial: scenario.initial.clone(),
+            scenario: Arc::new(scenario),
+        })
+    }
+
+    /// The same with each second integrated in several sub-steps; controllers stay at 1 s.
+    #[must_use]
+    pub fn with_substeps(mut self, substeps: u32) -> Self {
+        self.plant = Arc::new(Arc::unwrap_or_clone(self.plant).with_substeps(substeps));
+        self
+    }
+
+    /// The vehicle before the first step.
+    #[must_use]
+    pub fn start(&self) -> Run {
+        let state = self.plant.parked(&self.initial);
+        Run { memory: self.hpcu.awake(&state), state, steps: 0, record: None, summary: Summary::default() }
+    }
+
+    /// What the surroundings do during a step.
+    #[must_use]
+    pub fn disturbance(&self, step: usize) -> Disturbance {
+        let speeds = self.cycle.speeds_m_s();
+        let at = |second: usize| speeds[second.min(speeds.len() - 1)];
+        Disturbance {
+            start_speed_m_s: at(step),
+            end_speed_m_s: at(step + 1),
+            air: self.air,
+            solar_gain_w: self.climate.solar_gain_w,
+            occupants: f64::from(self.climate.occupants),
+        }
+    }
+
+    /// Command of the HPCU, heatDemandCommander and connection schedule for the next step.
+    pub fn rule_based_command(&self, run: &mut Run) -> Command {
+        let time_s = run.state.time_s;
+        let requests_w = heat_demand_commander::requests_w(&self.scenario.heat_demand, time_s);
+        let mut demand = self.hpcu.demand(&self.plant, &run.state, &mut run.memory, &requests_w);
+        heat_demand_commander::apply_schedule(
+            &self.scenario.connection_schedule,
+            time_s,
+            &mut demand.connections,
+        );
+        self.plant.ranges.encode(&demand)
+    }
+}

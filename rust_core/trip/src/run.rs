@@ -1,0 +1,130 @@
+//! Runs: an experiment driven from start to arrival.
+
+use crate::controllers::hpcu::HpcuState;
+use crate::experiment::Experiment;
+use crate::summary::Summary;
+use hp_plant::command::Command;
+use hp_plant::flows::Flow;
+use hp_plant::plant::StepRecord;
+use hp_plant::signals::{self, View};
+use hp_plant::state::State;
+use serde::{Deserialize, Serialize};
+
+/// Why a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum EndReason {
+    /// The cycle was driven to its end.
+    Arrived,
+    /// The battery could not deliver what driving needed.
+    UnservedEnergy,
+    /// The usable state of charge reached zero.
+    BatteryEmpty,
+}
+
+impl EndReason {
+    /// Name used in results.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Arrived => "arrived",
+            Self::UnservedEnergy => "unserved_energy",
+            Self::BatteryEmpty => "battery_empty",
+        }
+    }
+}
+
+/// Energy that may go unserved before a run ends [J].
+const TOLERATED_UNSERVED_J: f64 = 3600.0;
+
+/// A run in progress; a copy of it is a snapshot.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct Run {
+    /// State of the vehicle.
+    pub state: State,
+    /// Memory of the HPCU.
+    pub memory: HpcuState,
+    /// Steps done.
+    pub steps: usize,
+    /// Result of the last step.
+    pub record: Option<StepRecord>,
+    /// Totals so far.
+    pub summary: Summary,
+}
+
+/// Columns of a run, one row a second, the state at the start included.
+#[derive(Debug, Clone)]
+pub struct Trajectory {
+    /// Number of columns, those of [`signals::all`].
+    pub columns: usize,
+    /// Values, row by row.
+    pub values: Vec<f64>,
+    /// Totals.
+    pub summary: Summary,
+    /// Why it ended.
+    pub end: EndReason,
+}
+
+impl Experiment {
+    /// One step with a command; tells why the run is over, if it is.
+    pub fn step(&self, run: &mut Run, command: &Command) -> Option<EndReason> {
+        let disturbance = self.disturbance(run.steps);
+        let nodes = &self.plant.assembly.nodes;
+        let supplies_before_k =
+            [nodes.htc_supply, nodes.chiller_supply].map(|node| run.state.temperatures_k[node.index()]);
+        let record = run.record.get_or_insert_default();
+        self.plant.step_into(&mut run.state, command, &disturbance, record);
+        run.steps += 1;
+        run.summary.add(&self.plant, supplies_before_k, &run.state, record, &disturbance);
+        if run.summary.energy_j(Flow::Unserved) > TOLERATED_UNSERVED_J {
+            Some(EndReason::UnservedEnergy)
+        } else if run.summary.final_soc() <= 0.0 {
+            Some(EndReason::BatteryEmpty)
+        } else if run.steps >= self.cycle.duration_s() {
+            Some(EndReason::Arrived)
+        } else {
+            None
+        }
+    }
+
+    /// Appends everything that can be seen of a run now, one value a signal.
+    pub fn look(&self, run: &Run, row: &mut Vec<f64>) {
+        let disturbance = self.disturbance(run.steps.saturating_sub(1));
+        let view = View {
+            plant: &self.plant,
+            state: &run.state,
+            record: run.record.as_ref(),
+            disturbance: &disturbance,
+        };
+        row.extend(signals::all().map(|signal| signal.read(&view)));
+    }
+
+    /// Runs to the end with the rule-based controller.
+    #[must_use]
+    pub fn simulate(&self) -> Trajectory {
+        let columns = signals::all().count();
+        let mut values = Vec::with_capacity(columns * (self.cycle.duration_s() + 1));
+        let mut run = self.start();
+        self.look(&run, &mut values);
+        let end = loop {
+            let command = self.rule_based_command(&mut run);
+            let end = self.step(&mut run, &command);
+            self.look(&run, &mut values);
+            if let Some(reason) = end {
+                break reason;
+            }
+        };
+        Trajectory { columns, values, summary: run.summary, end }
+    }
+
+    /// Runs to the end with the rule-based controller, keeping totals only.
+    #[must_use]
+    pub fn totals(&self) -> (Summary, EndReason) {
+        let mut run = self.start();
+        loop {
+            let command = self.rule_based_command(&mut run);
+            if let Some(reason) = self.step(&mut run, &command) {
+                return (run.summary, reason);
+            }
+        }
+    }
+}
