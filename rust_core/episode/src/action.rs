@@ -2,12 +2,13 @@
 
 use hp_plant::circuits::branches::{self, Branch};
 use hp_plant::command::{
-    ACTUATOR_COUNT, ACTUATORS, BLOWER, Command, Connection, Demand, MAXIMUM_REQUEST_W, Member, RECIRCULATION,
+    ACTUATOR_COUNT, ACTUATORS, BLOWER, Command, Connection, MAXIMUM_REQUEST_W, Member, RECIRCULATION,
     REQUESTS, Scale,
 };
 use hp_plant::error::{PlantError, PlantResult};
 use hp_plant::plant::{Disturbance, Plant};
 use hp_plant::state::State;
+use hp_trip::controllers::rule_based::CabinMode;
 use hp_trip::experiment::Experiment;
 use hp_trip::heat_demand_commander;
 
@@ -214,20 +215,13 @@ impl Defaults {
     #[must_use]
     pub fn of(experiment: &Experiment) -> Self {
         let ranges = &experiment.plant.ranges;
-        let parameters = &experiment.hpcu.parameters;
-        let demand = Demand {
-            recirculation: parameters.heating_recirculation,
-            blower_level: parameters.blower_level,
-            htc_flow_kg_s: parameters.htc_flow_kg_s,
-            chiller_flow_kg_s: parameters.chiller_flow_kg_s,
-            requests_w: heat_demand_commander::requests_w(&experiment.scenario.heat_demand, 0.0),
-            cabin_set_point_k: parameters.cabin_set_point_degc.kelvin(),
-            ..Demand::default()
-        };
+        let settings = experiment.rules.constant_settings();
+        let requests_w = heat_demand_commander::requests_w(&experiment.scenario.heat_demand, 0.0);
+        let demand = settings.demand(CabinMode::Heating, &requests_w);
         Self {
             command: ranges.encode(&demand),
-            heating_recirculation: ranges.normalise(RECIRCULATION, parameters.heating_recirculation),
-            cooling_recirculation: ranges.normalise(RECIRCULATION, parameters.cooling_recirculation),
+            heating_recirculation: ranges.normalise(RECIRCULATION, settings.heating_recirculation),
+            cooling_recirculation: ranges.normalise(RECIRCULATION, settings.cooling_recirculation),
             unlimited_request: ranges.normalise(AMBIENT_REQUEST, MAXIMUM_REQUEST_W),
             requests_change: !experiment.scenario.heat_demand.schedule.is_empty(),
         }

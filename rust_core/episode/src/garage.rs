@@ -4,7 +4,6 @@ use hp_plant::config::initial::InitialParameters;
 use hp_plant::config::library::Override;
 use hp_plant::error::PlantResult;
 use hp_plant::plant::Plant;
-use hp_trip::controllers::hpcu::Hpcu;
 use hp_trip::drive_cycle::DriveCycle;
 use hp_trip::experiment::Experiment;
 use hp_trip::scenario::ClimateParameters;
@@ -112,10 +111,10 @@ impl Garage {
             cycle = cycle.window(first_s, last_s);
         }
         let ambient = trip.climate.ambient_temperature_degc;
-        let hpcu = Hpcu::of(&origin.rules, &origin.scenario.strategy, ambient);
+        let rules = origin.controller_file.at(ambient, &origin.scenario.strategy);
         Ok(Experiment {
             // Nearly all trips have the controller of their origin.
-            hpcu: if hpcu == *origin.hpcu { Arc::clone(&origin.hpcu) } else { Arc::new(hpcu) },
+            rules: if rules == *origin.rules { Arc::clone(&origin.rules) } else { Arc::new(rules) },
             scenario: Arc::clone(&origin.scenario),
             air: trip.climate.air(),
             climate: trip.climate,
@@ -123,7 +122,7 @@ impl Garage {
             plant: Arc::clone(&origin.plant),
             cycle,
             controller: origin.controller.clone(),
-            rules: Arc::clone(&origin.rules),
+            controller_file: Arc::clone(&origin.controller_file),
         })
     }
 }

@@ -1,7 +1,7 @@
 //! Whole runs: a scenario with its vehicle, cycle and controller, from start to arrival.
 
+use crate::controllers::Rules;
 use crate::controllers::file::Controller;
-use crate::controllers::hpcu::Hpcu;
 use crate::drive_cycle::DriveCycle;
 use crate::heat_demand_commander;
 use crate::run::Run;
@@ -33,9 +33,9 @@ pub struct Experiment {
     /// Name of the controller's file.
     pub controller: Arc<str>,
     /// What that file says.
-    pub rules: Arc<Controller>,
+    pub controller_file: Arc<Controller>,
     /// Rule-based controller of this scenario.
-    pub hpcu: Arc<Hpcu>,
+    pub rules: Arc<Rules>,
 }
 
 impl Experiment {
@@ -62,13 +62,13 @@ impl Experiment {
         }
         let scenario: ScenarioParameters = library::load(Kind::Scenario, scenario, &part("scenario"))?;
         let controller = controller.unwrap_or(&scenario.controller).to_owned();
-        let rules = Arc::new(Controller::load(&controller, &part("controller"))?);
+        let file = Arc::new(Controller::load(&controller, &part("controller"))?);
         Ok(Self {
             plant: Arc::new(Plant::load(&scenario.vehicle, &part("vehicle"))?),
             cycle: DriveCycle::load(&scenario.cycle)?,
             controller: controller.into(),
-            hpcu: Arc::new(Hpcu::of(&rules, &scenario.strategy, scenario.climate.ambient_temperature_degc)),
-            rules,
+            rules: Arc::new(file.at(scenario.climate.ambient_temperature_degc, &scenario.strategy)),
+            controller_file: file,
             air: scenario.climate.air(),
             climate: scenario.climate.clone(),
             initial: scenario.initial.clone(),
@@ -87,7 +87,13 @@ impl Experiment {
     #[must_use]
     pub fn start(&self) -> Run {
         let state = self.plant.parked(&self.initial);
-        Run { memory: self.hpcu.awake(&state), state, steps: 0, record: None, summary: Summary::default() }
+        Run {
+            memory: self.rules.awake(&self.plant, &state),
+            state,
+            steps: 0,
+            record: None,
+            summary: Summary::default(),
+        }
     }
 
     /// What the surroundings do during a step.
@@ -104,11 +110,11 @@ impl Experiment {
         }
     }
 
-    /// Command of the HPCU, heatDemandCommander and connection schedule for the next step.
+    /// Command of the rules, heatDemandCommander and connection schedule for the next step.
     pub fn rule_based_command(&self, run: &mut Run) -> Command {
         let time_s = run.state.time_s;
         let requests_w = heat_demand_commander::requests_w(&self.scenario.heat_demand, time_s);
-        let mut demand = self.hpcu.demand(&self.plant, &run.state, &mut run.memory, &requests_w);
+        let mut demand = self.rules.demand(&self.plant, &run.state, &mut run.memory, &requests_w);
         heat_demand_commander::apply_schedule(
             &self.scenario.connection_schedule,
             time_s,

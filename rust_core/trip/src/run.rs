@@ -1,6 +1,6 @@
 //! Runs: an experiment driven from start to arrival.
 
-use crate::controllers::hpcu::HpcuState;
+use crate::controllers::RuleMemory;
 use crate::experiment::Experiment;
 use crate::summary::Summary;
 use hp_plant::command::Command;
@@ -41,8 +41,8 @@ const TOLERATED_UNSERVED_J: f64 = 3600.0;
 pub struct Run {
     /// State of the vehicle.
     pub state: State,
-    /// Memory of the HPCU.
-    pub memory: HpcuState,
+    /// Memory of the rules.
+    pub memory: RuleMemory,
     /// Steps done.
     pub steps: usize,
     /// Result of the last step.

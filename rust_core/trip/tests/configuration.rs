@@ -1,8 +1,11 @@
 //! Configuration: what is built in loads, what is wrong is named.
 
 use hp_plant::config::library::{self, Kind, Override};
+use hp_trip::controllers::Rules;
 use hp_trip::drive_cycle::DriveCycle;
 use hp_trip::experiment::Experiment;
+use hp_trip::run::EndReason;
+use std::collections::BTreeMap;
 
 fn error_with(assignment: &str) -> String {
     let overrides = [Override::parse(assignment).expect("assignment")];
@@ -94,4 +97,31 @@ fn broken_cycle_files_are_refused_with_the_line() {
         let error = DriveCycle::from_csv("broken.csv", text).expect_err("must be refused").to_string();
         assert!(error.contains("broken.csv") && error.contains(part), "{error}");
     }
+}
+
+#[test]
+fn another_rule_set_drives_by_its_file_s_name_and_warms_the_cabin() {
+    let discomfort_k = |controller: &str| {
+        let experiment = Experiment::load("jeffs2019/case1-4", Some(controller), &[]).expect("built in");
+        assert_eq!(matches!(*experiment.rules, Rules::Thermostat(_)), controller == "thermostat");
+        let (summary, end) = experiment.totals();
+        assert_eq!(end, EndReason::Arrived);
+        let values: BTreeMap<String, f64> = summary.values().into_iter().collect();
+        assert!(values["worst_relative_residual"] < 1e-9 && values["limit_breaches"] == 0.0);
+        values["discomfort_k"]
+    };
+    // Unheated, the cabin would stay about 22 K too cold.
+    let (thermostat_k, hpcu_k) = (discomfort_k("thermostat"), discomfort_k("hpcu"));
+    assert!(thermostat_k != hpcu_k && (thermostat_k - hpcu_k).abs() < 1.0, "{thermostat_k}, {hpcu_k}");
+}
+
+#[test]
+fn overrides_reach_the_parameters_of_the_chosen_rules_only() {
+    let loaded = |key: &str| {
+        let change = Override::parse(&format!("controller.{key}=1500")).expect("assignment");
+        Experiment::load("jeffs2019/case1-4", Some("thermostat"), &[change])
+    };
+    assert!(loaded("compressor_power_w").is_ok());
+    let error = loaded("htc_set_point_degc").expect_err("the HPCU's").to_string();
+    assert!(error.contains("thermostat") && error.contains("htc_set_point_degc"), "{error}");
 }

@@ -3,6 +3,7 @@
 use hp_plant::command::{ACTUATORS, COMPRESSOR, Command, Connection, Demand, Member, RECIRCULATION, Scale};
 use hp_plant::config::library::{self, Kind};
 use hp_plant::plant::StepRecord;
+use hp_trip::controllers::rule_based::CabinMode;
 use hp_trip::experiment::Experiment;
 use hp_trip::heat_demand_commander;
 use hp_trip::run::Run;
@@ -113,27 +114,18 @@ pub fn random_segments() -> Vec<Segment> {
 }
 
 fn random_command(experiment: &Experiment, random: &mut Random) -> Command {
-    let parameters = &experiment.hpcu.parameters;
     let ranges = &experiment.plant.ranges;
     let mut connections = [Connection::Isolated; 6];
     for member in Member::ALL {
         connections[member as usize] = member.options()[random.below(member.options().len())];
     }
     let cooling = connections[Member::Cabin as usize] == Connection::Chiller;
+    let mode = if cooling { CabinMode::Cooling } else { CabinMode::Heating };
+    let requests_w = heat_demand_commander::requests_w(&experiment.scenario.heat_demand, 0.0);
     let demand = Demand {
         connections,
         ptc_allowed: random.below(2) == 1,
-        recirculation: if cooling {
-            parameters.cooling_recirculation
-        } else {
-            parameters.heating_recirculation
-        },
-        blower_level: parameters.blower_level,
-        htc_flow_kg_s: parameters.htc_flow_kg_s,
-        chiller_flow_kg_s: parameters.chiller_flow_kg_s,
-        requests_w: heat_demand_commander::requests_w(&experiment.scenario.heat_demand, 0.0),
-        cabin_set_point_k: parameters.cabin_set_point_degc.kelvin(),
-        ..Demand::default()
+        ..experiment.rules.constant_settings().demand(mode, &requests_w)
     };
     let mut command = ranges.encode(&demand);
     debug_assert_eq!(ACTUATORS[COMPRESSOR].scale, Scale::OffThenLogarithmic);

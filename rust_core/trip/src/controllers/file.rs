@@ -1,6 +1,6 @@
-//! Parameters of the rule-based heat pump control unit (HPCU).
+//! Controller files: parameters of rules, and what changes with the ambient temperature (ours).
 
-use crate::controllers::hpcu::HpcuParameters;
+use super::{RuleParameters, Rules};
 use crate::strategy::{Strategy, StrategyChanges};
 use hp_plant::config::library::{self, Kind, Override};
 use hp_plant::config::{Celsius, Validate, Violation, check_range};
@@ -8,11 +8,11 @@ use hp_plant::error::{PlantError, PlantResult};
 use serde::Deserialize;
 use toml::{Table, Value};
 
-/// A controller file: parameters, and what changes with the ambient temperature (ours).
+/// A controller file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Controller {
     /// Parameters outside any band.
-    pub parameters: HpcuParameters,
+    pub parameters: RuleParameters,
     bands: Vec<AmbientBand>,
 }
 
@@ -20,7 +20,7 @@ pub struct Controller {
 #[derive(Debug, Clone, PartialEq)]
 struct AmbientBand {
     up_to_degc: Celsius,
-    parameters: HpcuParameters,
+    parameters: RuleParameters,
     strategy: StrategyChanges,
 }
 
@@ -65,21 +65,21 @@ impl Controller {
             library::merge(&mut whole, band.controller);
             bands.push(AmbientBand {
                 up_to_degc: band.up_to_degc,
-                parameters: library::read(&place, whole)?,
+                parameters: RuleParameters::read(&place, whole)?,
                 strategy: band.strategy,
             });
         }
-        Ok(Self { parameters: library::read(name, table)?, bands })
+        Ok(Self { parameters: RuleParameters::read(name, table)?, bands })
     }
 
-    /// Parameters and strategy at an ambient temperature, for a scenario that allows `strategy`.
+    /// The rules at an ambient temperature, for a scenario that allows `strategy`.
     ///
     /// The first band that reaches up to the temperature holds; above all bands, what stands outside of them.
     #[must_use]
-    pub fn at(&self, ambient: Celsius, strategy: &Strategy) -> (HpcuParameters, Strategy) {
+    pub fn at(&self, ambient: Celsius, strategy: &Strategy) -> Rules {
         match self.bands.iter().find(|band| ambient <= band.up_to_degc) {
-            Some(band) => (band.parameters.clone(), band.strategy.applied_to(strategy)),
-            None => (self.parameters.clone(), strategy.clone()),
+            Some(band) => band.parameters.controller(band.strategy.applied_to(strategy)),
+            None => self.parameters.controller(strategy.clone()),
         }
     }
 }
@@ -110,13 +110,16 @@ mod tests {
         .expect("valid");
         let strategy =
             Experiment::load("jeffs2019/case1-1", None, &[]).expect("built in").scenario.strategy.clone();
-        let at = |degc: f64| controller.at(Celsius(degc), &strategy);
-        assert_eq!(at(-10.0).1.battery, BatteryTreatment::Isolate);
-        assert_eq!(at(-10.0).0.battery.heat_up_to_degc, Celsius(20.0));
+        let at = |degc: f64| match controller.at(Celsius(degc), &strategy) {
+            Rules::Hpcu(hpcu) => hpcu,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(at(-10.0).strategy.battery, BatteryTreatment::Isolate);
+        assert_eq!(at(-10.0).parameters.battery.heat_up_to_degc, Celsius(20.0));
         assert_eq!(at(-9.9), at(5.0));
-        assert_eq!(at(5.0).0.battery.heat_up_to_degc, Celsius(10.0));
-        assert_eq!(at(5.0).0.battery.cool_above_degc, Celsius(30.0));
-        assert_eq!(at(5.1), (controller.parameters.clone(), strategy.clone()));
+        assert_eq!(at(5.0).parameters.battery.heat_up_to_degc, Celsius(10.0));
+        assert_eq!(at(5.0).parameters.battery.cool_above_degc, Celsius(30.0));
+        assert_eq!(Rules::Hpcu(at(5.1)), controller.parameters.controller(strategy.clone()));
     }
 
     #[test]
@@ -127,6 +130,10 @@ mod tests {
             ("[[ambient_bands]]\nup_to_degc = 0.0\ncontroller.htc_set_point_degc = 500.0\n", "htc_set_point"),
             ("[[ambient_bands]]\nup_to_degc = 0.0\nstrategy.sun = true\n", "sun"),
             ("ambient_bands = 3\n", "list of tables"),
+            ("rules = \"hpcuu\"\n", "`rules` is \"hpcuu\", but must be one of hpcu, thermostat"),
+            ("rules = 3\n", "must be one of hpcu, thermostat"),
+            // Rules refuse the parameters of others.
+            ("rules = \"thermostat\"\n", "unknown field"),
         ] {
             let message = loaded(bands).expect_err("refused").to_string();
             assert!(message.contains(expected), "{bands}: {message}");

@@ -3,11 +3,11 @@
 //! Three purposes: constant coolant flow demands, connections of the components, compressor demand. It reads
 //! the plant's temperatures as a real one does and has no way to the plant but its [`Demand`].
 
-use crate::controllers::file::Controller;
+use super::rule_based::{CabinMode, ConstantSettings, RuleBased};
 use crate::strategy::{BatteryTreatment, ClimateControl, Strategy};
 use hp_plant::circuits::assembly::NODES;
 use hp_plant::circuits::branches::Branch;
-use hp_plant::command::{Connection, Demand, Member};
+use hp_plant::command::{Connection, Demand, MAXIMUM_REQUEST_W, Member};
 use hp_plant::components::pid::{PidParameters, ResetGains, ResetPid};
 use hp_plant::config::Celsius;
 use hp_plant::numerics::thermal_network::Node;
@@ -75,15 +75,6 @@ parameters! {
     }
 }
 
-/// What the cabin needs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum CabinMode {
-    /// Heat.
-    Heating,
-    /// Air conditioning.
-    Cooling,
-}
-
 /// Stage of the thermal battery: each is left once and never entered again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ThermalBatteryStage {
@@ -97,7 +88,7 @@ pub enum ThermalBatteryStage {
 
 /// Memory of the HPCU.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct HpcuState {
+pub struct HpcuMemory {
     /// Heating or cooling.
     pub cabin_mode: CabinMode,
     /// The battery is being heated.
@@ -139,17 +130,11 @@ struct PowerGains {
     chiller: ResetGains,
 }
 
-impl Hpcu {
-    /// The controller of a strategy at an ambient temperature.
-    #[must_use]
-    pub fn of(controller: &Controller, strategy: &Strategy, ambient: Celsius) -> Self {
-        let (parameters, strategy) = controller.at(ambient, strategy);
-        Self::new(parameters, strategy)
-    }
+impl RuleBased for Hpcu {
+    type Parameters = HpcuParameters;
+    type Memory = HpcuMemory;
 
-    /// An HPCU with parameters and what it may use.
-    #[must_use]
-    pub fn new(parameters: HpcuParameters, strategy: Strategy) -> Self {
+    fn new(parameters: HpcuParameters, strategy: Strategy) -> Self {
         let gains = |pid: &PidParameters| ResetGains::new(pid, CONTROL_PERIOD_S);
         let gains = PowerGains {
             cabin: gains(&parameters.cabin_pid),
@@ -160,12 +145,22 @@ impl Hpcu {
         Self { parameters, strategy, gains }
     }
 
-    /// Memory at the start of a run.
-    #[must_use]
-    pub fn awake(&self, state: &State) -> HpcuState {
+    fn constant_settings(&self) -> ConstantSettings {
+        let parameters = &self.parameters;
+        ConstantSettings {
+            cabin_set_point_degc: parameters.cabin_set_point_degc,
+            htc_flow_kg_s: parameters.htc_flow_kg_s,
+            chiller_flow_kg_s: parameters.chiller_flow_kg_s,
+            blower_level: parameters.blower_level,
+            heating_recirculation: parameters.heating_recirculation,
+            cooling_recirculation: parameters.cooling_recirculation,
+        }
+    }
+
+    fn awake(&self, _: &Plant, state: &State) -> HpcuMemory {
         let cabin_k = temperature_k(state, NODES.cabin);
         let warm = cabin_k > self.parameters.cabin_set_point_degc.kelvin();
-        HpcuState {
+        HpcuMemory {
             cabin_mode: if warm { CabinMode::Cooling } else { CabinMode::Heating },
             heats_battery: false,
             cools_battery: false,
@@ -178,37 +173,23 @@ impl Hpcu {
         }
     }
 
-    /// Demand for the next control period, given the heat flows requested by the heatDemandCommander [W].
-    pub fn demand(
-        &self,
-        plant: &Plant,
-        state: &State,
-        memory: &mut HpcuState,
-        requests_w: &[f64; 6],
-    ) -> Demand {
+    fn demand(&self, plant: &Plant, state: &State, memory: &mut HpcuMemory, requests_w: &[f64; 6]) -> Demand {
         let mode = self.cabin_mode(state, memory);
         let mut demand = Demand {
             connections: self.connections(plant, state, memory, mode),
             ptc_allowed: self.strategy.ptc
                 && mode == CabinMode::Heating
                 && self.cabin_error_k(state, mode) >= self.parameters.ptc_from_deviation_k,
-            recirculation: match mode {
-                CabinMode::Heating => self.parameters.heating_recirculation,
-                CabinMode::Cooling => self.parameters.cooling_recirculation,
-            },
-            blower_level: self.parameters.blower_level,
-            htc_flow_kg_s: self.parameters.htc_flow_kg_s,
-            chiller_flow_kg_s: self.parameters.chiller_flow_kg_s,
-            requests_w: *requests_w,
-            cabin_set_point_k: self.parameters.cabin_set_point_degc.kelvin(),
-            ..Demand::default()
+            ..self.constant_settings().demand(mode, requests_w)
         };
         self.trim_requests(state, memory, mode, &mut demand);
         demand.compressor_power_w = self.compressor_power_w(plant, state, memory, mode);
         demand
     }
+}
 
-    fn cabin_mode(&self, state: &State, memory: &mut HpcuState) -> CabinMode {
+impl Hpcu {
+    fn cabin_mode(&self, state: &State, memory: &mut HpcuMemory) -> CabinMode {
         let above_k = temperature_k(state, NODES.cabin) - self.parameters.cabin_set_point_degc.kelvin();
         memory.cabin_mode = match self.strategy.climate_control {
             ClimateControl::Heat => CabinMode::Heating,
@@ -224,7 +205,7 @@ impl Hpcu {
         &self,
         plant: &Plant,
         state: &State,
-        memory: &mut HpcuState,
+        memory: &mut HpcuMemory,
         mode: CabinMode,
     ) -> [Connection; 6] {
         let heating = mode == CabinMode::Heating;
@@ -243,7 +224,7 @@ impl Hpcu {
         connections
     }
 
-    fn battery_connection(&self, state: &State, memory: &mut HpcuState) -> Connection {
+    fn battery_connection(&self, state: &State, memory: &mut HpcuMemory) -> Connection {
         let limits = &self.parameters.battery;
         let battery_k = temperature_k(state, NODES.battery);
         let heat_up_to_k = limits.heat_up_to_degc.kelvin();
@@ -267,7 +248,12 @@ impl Hpcu {
     }
 
     /// First HTC while it can heat it, then chiller until empty, then isolated.
-    fn thermal_battery_connection(&self, plant: &Plant, state: &State, memory: &mut HpcuState) -> Connection {
+    fn thermal_battery_connection(
+        &self,
+        plant: &Plant,
+        state: &State,
+        memory: &mut HpcuMemory,
+    ) -> Connection {
         if !self.strategy.thermal_battery {
             return Connection::Isolated;
         }
@@ -292,7 +278,7 @@ impl Hpcu {
     }
 
     /// Lets requests fade near their targets, so that neither cabin nor battery overshoots.
-    fn trim_requests(&self, state: &State, memory: &HpcuState, mode: CabinMode, demand: &mut Demand) {
+    fn trim_requests(&self, state: &State, memory: &HpcuMemory, mode: CabinMode, demand: &mut Demand) {
         let beyond_k = self.cabin_error_k(state, mode) + self.parameters.cabin_request_band_k;
         demand.requests_w[Member::Cabin as usize] *=
             (beyond_k / self.parameters.cabin_request_band_k).clamp(0.0, 1.0);
@@ -303,7 +289,7 @@ impl Hpcu {
                 (above_k / limits.source_request_band_k).clamp(0.0, 1.0);
         }
         if mode == CabinMode::Cooling {
-            demand.requests_w[Member::Ambient as usize] = hp_plant::command::MAXIMUM_REQUEST_W;
+            demand.requests_w[Member::Ambient as usize] = MAXIMUM_REQUEST_W;
         }
     }
 
@@ -321,7 +307,7 @@ impl Hpcu {
         &self,
         plant: &Plant,
         state: &State,
-        memory: &mut HpcuState,
+        memory: &mut HpcuMemory,
         mode: CabinMode,
     ) -> f64 {
         if !self.strategy.heat_pump {
@@ -359,7 +345,7 @@ impl Hpcu {
     }
 
     /// Deviation of the battery from its target while the loops act on it [K].
-    fn battery_error_k(&self, state: &State, memory: &HpcuState) -> Option<f64> {
+    fn battery_error_k(&self, state: &State, memory: &HpcuMemory) -> Option<f64> {
         let battery_k = temperature_k(state, NODES.battery);
         let limits = &self.parameters.battery;
         if memory.heats_battery {
