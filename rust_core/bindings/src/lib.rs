@@ -4,6 +4,7 @@ mod actions;
 mod episode;
 mod errors;
 mod experiment;
+mod kinds;
 mod vector;
 
 use pyo3::prelude::*;
@@ -25,11 +26,15 @@ mod _core {
     use super::errors::to_python;
     #[pymodule_export]
     use super::experiment::{Experiment, Run, plant_step_seconds, signal_table, totals};
+    use super::kinds::{BENCHMARK, CALIBRATION, TRAINING};
     #[pymodule_export]
     use super::vector::Vector;
+    use hp_episode::kinds::{EPISODES, REWARD};
     use hp_plant::command::{ACTUATORS, Scale};
+    use hp_plant::config::kinds::{REFRIGERANT, VEHICLE};
     use hp_plant::config::library::{self, Kind};
     use hp_plant::error::PlantError;
+    use hp_trip::kinds::{CONTROLLER, CYCLE, SCENARIO};
     use pyo3::prelude::*;
 
     #[pymodule_init]
@@ -38,21 +43,23 @@ mod _core {
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 
+    /// Every kind of configuration.
+    const KINDS: [Kind; 10] = [
+        VEHICLE,
+        CONTROLLER,
+        SCENARIO,
+        CYCLE,
+        REFRIGERANT,
+        CALIBRATION,
+        EPISODES,
+        REWARD,
+        BENCHMARK,
+        TRAINING,
+    ];
+
     fn kind(word: &str) -> PyResult<Kind> {
-        let kinds = [
-            Kind::Vehicle,
-            Kind::Controller,
-            Kind::Scenario,
-            Kind::Cycle,
-            Kind::Refrigerant,
-            Kind::Calibration,
-            Kind::Episodes,
-            Kind::Reward,
-            Kind::Benchmark,
-            Kind::Training,
-        ];
-        kinds.into_iter().find(|kind| kind.word() == word).ok_or_else(|| {
-            let available = kinds.map(Kind::word).join(", ");
+        KINDS.into_iter().find(|kind| kind.word == word).ok_or_else(|| {
+            let available = KINDS.map(|kind| kind.word).join(", ");
             to_python(PlantError::Unknown { kind: "kind of configuration", name: word.to_owned(), available })
         })
     }

@@ -6,6 +6,7 @@
 pub mod action;
 pub mod episode;
 pub mod garage;
+pub mod kinds;
 pub mod observation;
 mod prefetch;
 pub mod random;

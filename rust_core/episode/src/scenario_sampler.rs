@@ -1,8 +1,9 @@
 //! Distributions of episodes: which trips an agent trains on and is tested on.
 
 use crate::garage::{Garage, Trip};
+use crate::kinds::EPISODES;
 use crate::random::Random;
-use hp_plant::config::library::{self, Kind};
+use hp_plant::config::library;
 use hp_plant::config::{Celsius, Validate, Violation, check_range};
 use hp_plant::error::PlantResult;
 use hp_plant::parameters;
@@ -121,7 +122,7 @@ impl Distribution {
     /// # Errors
     /// Anything wrong in its file, or in the scenario and cycles that it names.
     pub fn load(name: &str, garage: &Garage) -> PlantResult<Self> {
-        let parameters: DistributionParameters = library::load(Kind::Episodes, name, &[])?;
+        let parameters: DistributionParameters = library::load(EPISODES, name, &[])?;
         let template = garage.experiment(&parameters.scenario)?;
         let mut standstills = Vec::with_capacity(parameters.cycles.len());
         for cycle in &parameters.cycles {

@@ -2,11 +2,12 @@
 
 use crate::action::ActionTable;
 use crate::garage::{Garage, Trip};
+use crate::kinds::REWARD;
 use crate::observation::ObservationTable;
 use crate::reward::{self, RewardParameters};
 use crate::scenario_sampler::Distribution;
 use crate::snapshot;
-use hp_plant::config::library::{self, Kind, Override};
+use hp_plant::config::library::{self, Override};
 use hp_plant::error::{PlantError, PlantResult};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -91,7 +92,7 @@ impl Setup {
         let actions = ActionTable::new(&settings.actions)?;
         let observations = ObservationTable::new(&settings.observations, &actions)?;
         let reward: RewardParameters =
-            library::load(Kind::Reward, &settings.reward, &parse(&settings.reward_overrides)?)?;
+            library::load(REWARD, &settings.reward, &parse(&settings.reward_overrides)?)?;
         reward::check(&reward).map_err(|violation| violation.in_file(&settings.reward))?;
         let fingerprint = snapshot::fingerprint(&[
             env!("CARGO_PKG_VERSION").to_owned(),

@@ -64,7 +64,8 @@ fn random_commands(experiment: &Experiment, seed: u64) -> PlantResult<Vec<Comman
 mod tests {
     use super::*;
     use hp_plant::circuits::refrigeration_loop::Limit;
-    use hp_plant::config::library::{self, Kind};
+    use hp_plant::config::library;
+    use hp_trip::kinds::SCENARIO;
 
     #[test]
     fn the_steps_timed_are_those_with_the_compressor_on() {
@@ -85,7 +86,7 @@ mod tests {
     #[test]
     fn random_actions_hardly_ever_need_bracketing() {
         let (mut solved, mut bracketed) = (0, 0);
-        let scenarios = library::names(Kind::Scenario);
+        let scenarios = library::names(SCENARIO);
         for (seed, scenario) in scenarios.iter().enumerate() {
             let experiment = Experiment::load(scenario, None, &[]).expect("built in");
             let mut run = experiment.start();

@@ -12,7 +12,8 @@ use crate::components::exhaust_recovery::{ExhaustRecovery, RecoveryTemperatures}
 use crate::components::pid::ResetPid;
 use crate::components::powertrain::Powertrain;
 use crate::config::initial::InitialParameters;
-use crate::config::library::{self, Kind, Override};
+use crate::config::kinds::VEHICLE;
+use crate::config::library::{self, Override};
 use crate::config::vehicle::VehicleParameters;
 use crate::control::thermal_switch::ThermalSwitches;
 use crate::control::vehicle_controls::{ControlGains, Period};
@@ -127,7 +128,7 @@ impl Plant {
     /// # Errors
     /// See [`library::load`].
     pub fn load(vehicle: &str, overrides: &[Override]) -> PlantResult<Self> {
-        Self::new(library::load(Kind::Vehicle, vehicle, overrides)?)
+        Self::new(library::load(VEHICLE, vehicle, overrides)?)
     }
 
     /// The same vehicle with each second integrated in several sub-steps; controllers stay at 1 s.

@@ -1,11 +1,12 @@
 //! Commands: what is encoded is decoded.
 
 use hp_plant::command::{ACTUATOR_COUNT, ACTUATORS, ActuatorRanges, Command, Member, Scale};
-use hp_plant::config::library::{self, Kind};
+use hp_plant::config::kinds::VEHICLE;
+use hp_plant::config::library;
 use proptest::prelude::*;
 
 fn ranges() -> ActuatorRanges {
-    ActuatorRanges::of(&library::load(Kind::Vehicle, "jeffs2019", &[]).expect("built-in vehicle"))
+    ActuatorRanges::of(&library::load(VEHICLE, "jeffs2019", &[]).expect("built-in vehicle"))
 }
 
 proptest! {

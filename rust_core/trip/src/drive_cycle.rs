@@ -1,6 +1,7 @@
 //! Drive cycles: speed against time.
 
-use hp_plant::config::library::{self, Kind};
+use crate::kinds::CYCLE;
+use hp_plant::config::library;
 use hp_plant::error::{PlantError, PlantResult};
 use std::sync::Arc;
 
@@ -22,7 +23,7 @@ impl DriveCycle {
     /// # Errors
     /// Unknown name, or a file that is no cycle.
     pub fn load(name: &str) -> PlantResult<Self> {
-        Self::from_csv(name, &library::text(Kind::Cycle, name)?)
+        Self::from_csv(name, &library::text(CYCLE, name)?)
     }
 
     /// Reads `time_s,speed_km_h` rows (comment lines start with `#`) and interpolates to full seconds.

@@ -4,12 +4,13 @@ use crate::controllers::Rules;
 use crate::controllers::file::Controller;
 use crate::drive_cycle::DriveCycle;
 use crate::heat_demand_commander;
+use crate::kinds::SCENARIO;
 use crate::run::Run;
 use crate::scenario::{ClimateParameters, ScenarioParameters};
 use crate::summary::Summary;
 use hp_plant::command::Command;
 use hp_plant::config::initial::InitialParameters;
-use hp_plant::config::library::{self, Kind, Override};
+use hp_plant::config::library::{self, Override};
 use hp_plant::error::{PlantError, PlantResult};
 use hp_plant::media::air::AirProperties;
 use hp_plant::plant::{Disturbance, Plant};
@@ -60,7 +61,7 @@ impl Experiment {
                 allowed: format!("must begin with one of {}", known.join(", ")),
             });
         }
-        let scenario: ScenarioParameters = library::load(Kind::Scenario, scenario, &part("scenario"))?;
+        let scenario: ScenarioParameters = library::load(SCENARIO, scenario, &part("scenario"))?;
         let controller = controller.unwrap_or(&scenario.controller).to_owned();
         let file = Arc::new(Controller::load(&controller, &part("controller"))?);
         Ok(Self {

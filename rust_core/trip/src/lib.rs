@@ -7,6 +7,7 @@ pub mod controllers;
 pub mod drive_cycle;
 pub mod experiment;
 pub mod heat_demand_commander;
+pub mod kinds;
 pub mod run;
 pub mod scenario;
 pub mod strategy;

@@ -1,9 +1,10 @@
 //! Configuration: what is built in loads, what is wrong is named.
 
-use hp_plant::config::library::{self, Kind, Override};
+use hp_plant::config::library::{self, Override};
 use hp_trip::controllers::Rules;
 use hp_trip::drive_cycle::DriveCycle;
 use hp_trip::experiment::Experiment;
+use hp_trip::kinds::SCENARIO;
 use hp_trip::run::EndReason;
 use std::collections::BTreeMap;
 
@@ -14,7 +15,7 @@ fn error_with(assignment: &str) -> String {
 
 #[test]
 fn every_built_in_scenario_loads() {
-    let names = library::names(Kind::Scenario);
+    let names = library::names(SCENARIO);
     assert!(names.len() >= 9);
     for name in names {
         Experiment::load(name, None, &[]).unwrap_or_else(|error| panic!("{error}"));

@@ -8,12 +8,13 @@ use hp_plant::command::{ACTUATOR_COUNT, Command};
 use hp_plant::components::battery::BatteryState;
 use hp_plant::config::Celsius;
 use hp_plant::config::initial::InitialParameters;
-use hp_plant::config::library::{self, Kind};
+use hp_plant::config::library;
 use hp_plant::flows::{Flow, Flows};
 use hp_plant::media::air;
 use hp_plant::plant::{Disturbance, Plant, Stage, StepRecord};
 use hp_plant::state::State;
 use hp_trip::experiment::Experiment;
+use hp_trip::kinds::SCENARIO;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
@@ -30,7 +31,7 @@ const HOLD_S: usize = 10;
 
 #[test]
 fn residual_is_round_off_at_every_step_of_all_built_in_scenarios() {
-    library::names(Kind::Scenario).par_iter().for_each(|name| {
+    library::names(SCENARIO).par_iter().for_each(|name| {
         let experiment = Experiment::load(name, None, &[]).expect("built-in scenario");
         let mut run = experiment.start();
         loop {

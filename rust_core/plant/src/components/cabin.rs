@@ -104,7 +104,8 @@ impl CabinParameters {
 
 #[cfg(test)]
 mod tests {
-    use crate::config::library::{self, Kind};
+    use crate::config::kinds::VEHICLE;
+    use crate::config::library;
     use crate::config::vehicle::VehicleParameters;
     use proptest::prelude::*;
 
@@ -113,7 +114,7 @@ mod tests {
         fn every_occupant_has_fresh_air_whatever_is_asked(
             level in 0.0..=1.0_f64, recirculation in 0.0..=1.0_f64, occupants in 0_u32..6,
         ) {
-            let vehicle: VehicleParameters = library::load(Kind::Vehicle, "jeffs2019", &[]).expect("built in");
+            let vehicle: VehicleParameters = library::load(VEHICLE, "jeffs2019", &[]).expect("built in");
             let occupants = f64::from(occupants);
             let air = vehicle.cabin.ventilation(level, recirculation, occupants);
             let needed = vehicle.cabin.minimum_fresh_air_per_occupant_kg_s * occupants.max(1.0)

@@ -1,6 +1,6 @@
 //! Finding, merging and checking configuration files.
 //!
-//! A name is looked up among the files compiled in (`configs/`), then on disk. A file may name a `base` whose
+//! A name is looked up among the files compiled into the crate that owns the kind, then on disk. A file may name a `base` whose
 //! values it replaces. Overrides replace single values by dotted key.
 
 use super::Validate;
@@ -9,83 +9,24 @@ use serde::de::DeserializeOwned;
 use std::path::Path;
 use toml::{Table, Value};
 
-mod built_in {
-    include!(concat!(env!("OUT_DIR"), "/built_in_configs.rs"));
-}
-
 /// Longest chain of `base` files.
 const LONGEST_BASE_CHAIN: usize = 8;
 
-/// Kind of configuration file; its folder below `configs/`.
+/// A kind of configuration file; the crate that owns it defines it as a constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// `vehicles/*.toml`
-    Vehicle,
-    /// `controllers/*.toml`
-    Controller,
-    /// `scenarios/**/*.toml`
-    Scenario,
-    /// `cycles/*.csv`
-    Cycle,
-    /// `refrigerants/*.csv`
-    Refrigerant,
-    /// `calibration/*.toml`
-    Calibration,
-    /// `episodes/*.toml`
-    Episodes,
-    /// `rewards/*.toml`
-    Reward,
-    /// `benchmark/*.toml`
-    Benchmark,
-    /// `agents/*.toml`
-    Training,
-}
-
-impl Kind {
-    /// Folder and file ending.
-    fn place(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Vehicle => ("vehicles", "toml"),
-            Self::Controller => ("controllers", "toml"),
-            Self::Scenario => ("scenarios", "toml"),
-            Self::Cycle => ("cycles", "csv"),
-            Self::Refrigerant => ("refrigerants", "csv"),
-            Self::Calibration => ("calibration", "toml"),
-            Self::Episodes => ("episodes", "toml"),
-            Self::Reward => ("rewards", "toml"),
-            Self::Benchmark => ("benchmark", "toml"),
-            Self::Training => ("agents", "toml"),
-        }
-    }
-
+pub struct Kind {
     /// Word for messages.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Vehicle => "vehicle",
-            Self::Controller => "controller",
-            Self::Scenario => "scenario",
-            Self::Cycle => "drive cycle",
-            Self::Refrigerant => "refrigerant",
-            Self::Calibration => "calibration",
-            Self::Episodes => "distribution of episodes",
-            Self::Reward => "reward",
-            Self::Benchmark => "benchmark",
-            Self::Training => "training configuration",
-        }
-    }
+    pub word: &'static str,
+    /// File ending, without the dot.
+    pub ending: &'static str,
+    /// Names and texts of the files compiled in.
+    pub files: &'static [(&'static str, &'static str)],
 }
 
 /// Names of the files compiled in.
 #[must_use]
 pub fn names(kind: Kind) -> Vec<&'static str> {
-    let (folder, ending) = kind.place();
-    built_in::FILES
-        .iter()
-        .filter_map(|(name, _)| {
-            name.strip_prefix(folder)?.strip_prefix('/')?.strip_suffix(ending)?.strip_suffix('.')
-        })
-        .collect()
+    kind.files.iter().map(|(name, _)| *name).collect()
 }
 
 /// Text of a file compiled in or on disk.
@@ -93,20 +34,18 @@ pub fn names(kind: Kind) -> Vec<&'static str> {
 /// # Errors
 /// No such file, or it cannot be read.
 pub fn text(kind: Kind, name: &str) -> PlantResult<String> {
-    let (folder, ending) = kind.place();
-    let key = format!("{folder}/{name}.{ending}");
-    if let Some((_, text)) = built_in::FILES.iter().find(|(file, _)| *file == key) {
+    if let Some((_, text)) = kind.files.iter().find(|(file, _)| *file == name) {
         return Ok((*text).to_owned());
     }
     let path = Path::new(name);
-    if path.extension().is_some_and(|found| found == ending) {
+    if path.extension().is_some_and(|found| found == kind.ending) {
         return std::fs::read_to_string(path)
             .map_err(|error| PlantError::Syntax { file: name.to_owned(), message: error.to_string() });
     }
     Err(PlantError::Unknown {
-        kind: kind.word(),
+        kind: kind.word,
         name: name.to_owned(),
-        available: format!("{}, or the path of a .{ending} file", names(kind).join(", ")),
+        available: format!("{}, or the path of a .{} file", names(kind).join(", "), kind.ending),
     })
 }
 
@@ -193,7 +132,7 @@ fn merged(kind: Kind, name: &str, depth: usize) -> PlantResult<Table> {
             merge(&mut whole, table);
             Ok(whole)
         }
-        Some(other) => Err(syntax(format!("`base` is {other}, but must be the name of a {}", kind.word()))),
+        Some(other) => Err(syntax(format!("`base` is {other}, but must be the name of a {}", kind.word))),
     }
 }
 

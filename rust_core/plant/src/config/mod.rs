@@ -1,6 +1,7 @@
 //! Configuration: TOML files to typed, checked parameters.
 
 pub mod initial;
+pub mod kinds;
 pub mod library;
 mod validate;
 pub mod vehicle;

@@ -1,11 +1,12 @@
 //! What the benchmarks drive: stretches of built-in scenarios, prepared so that only the steps are timed.
 
 use hp_plant::command::{ACTUATORS, COMPRESSOR, Command, Connection, Demand, Member, RECIRCULATION, Scale};
-use hp_plant::config::library::{self, Kind};
+use hp_plant::config::library;
 use hp_plant::plant::StepRecord;
 use hp_trip::controllers::rule_based::CabinMode;
 use hp_trip::experiment::Experiment;
 use hp_trip::heat_demand_commander;
+use hp_trip::kinds::SCENARIO;
 use hp_trip::run::Run;
 use std::hint::black_box;
 use std::sync::Arc;
@@ -69,7 +70,7 @@ fn compressor_on(experiment: &Experiment) -> Vec<(Run, bool)> {
 /// All stretches of the paper's nine scenarios during which the compressor runs.
 pub fn compressor_on_segments() -> Vec<Segment> {
     let mut segments = Vec::new();
-    for name in library::names(Kind::Scenario).iter().filter(|name| name.starts_with("jeffs2019/")) {
+    for name in library::names(SCENARIO).iter().filter(|name| name.starts_with("jeffs2019/")) {
         let experiment = Arc::new(Experiment::load(name, None, &[]).expect("built-in scenario"));
         let steps = compressor_on(&experiment);
         let mut from = 0;
@@ -110,7 +111,7 @@ pub fn random_segments() -> Vec<Segment> {
             driver: Driver::Prepared(commands),
         }
     };
-    library::names(Kind::Scenario).iter().map(segment).collect()
+    library::names(SCENARIO).iter().map(segment).collect()
 }
 
 fn random_command(experiment: &Experiment, random: &mut Random) -> Command {

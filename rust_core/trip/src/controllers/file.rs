@@ -1,8 +1,9 @@
 //! Controller files: parameters of rules, and what changes with the ambient temperature (ours).
 
 use super::{RuleParameters, Rules};
+use crate::kinds::CONTROLLER;
 use crate::strategy::{Strategy, StrategyChanges};
-use hp_plant::config::library::{self, Kind, Override};
+use hp_plant::config::library::{self, Override};
 use hp_plant::config::{Celsius, Validate, Violation, check_range};
 use hp_plant::error::{PlantError, PlantResult};
 use serde::Deserialize;
@@ -47,7 +48,7 @@ impl Controller {
     /// # Errors
     /// Anything wrong in its file, in one of its bands or in an override.
     pub fn load(name: &str, overrides: &[Override]) -> PlantResult<Self> {
-        let mut table = library::table(Kind::Controller, name, overrides)?;
+        let mut table = library::table(CONTROLLER, name, overrides)?;
         let bands = table.remove("ambient_bands").unwrap_or_else(|| Value::Array(Vec::new()));
         let Value::Array(rows) = bands else {
             return Err(not_a_list(name, "ambient_bands"));

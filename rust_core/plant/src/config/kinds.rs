@@ -1,0 +1,13 @@
+//! Kinds of configuration files that a plant is made from.
+
+use crate::config::library::Kind;
+
+mod embedded {
+    include!(concat!(env!("OUT_DIR"), "/embedded.rs"));
+}
+
+/// A vehicle: `vehicles/*.toml`.
+pub const VEHICLE: Kind = Kind { word: "vehicle", ending: "toml", files: embedded::VEHICLES };
+
+/// Properties of a refrigerant: `refrigerants/*.csv`.
+pub const REFRIGERANT: Kind = Kind { word: "refrigerant", ending: "csv", files: embedded::REFRIGERANTS };
