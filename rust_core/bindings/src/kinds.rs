@@ -7,11 +7,13 @@ mod embedded {
 }
 
 /// Free parameters and targets: `calibration/*.toml`.
-pub const CALIBRATION: Kind = Kind { word: "calibration", ending: "toml", files: embedded::CALIBRATIONS };
+pub const CALIBRATION: Kind =
+    Kind { word: "calibration", ending: "toml", files: embedded::CALIBRATIONS, references: &[] };
 
 /// Held-out trips: `benchmark/*.toml`.
-pub const BENCHMARK: Kind = Kind { word: "benchmark", ending: "toml", files: embedded::BENCHMARKS };
+pub const BENCHMARK: Kind =
+    Kind { word: "benchmark", ending: "toml", files: embedded::BENCHMARKS, references: &[] };
 
 /// A training: `agents/*.toml`.
 pub const TRAINING: Kind =
-    Kind { word: "training configuration", ending: "toml", files: embedded::TRAININGS };
+    Kind { word: "training configuration", ending: "toml", files: embedded::TRAININGS, references: &[] };

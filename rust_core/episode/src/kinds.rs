@@ -1,14 +1,22 @@
 //! Kinds of configuration files that a decision process is made from.
 
-use hp_plant::config::library::Kind;
+use hp_plant::config::library::{EACH, Kind, Reference};
+use hp_trip::kinds::{CYCLE, SCENARIO};
 
 mod embedded {
     include!(concat!(env!("OUT_DIR"), "/embedded.rs"));
 }
 
 /// A distribution of trips: `episodes/*.toml`.
-pub const EPISODES: Kind =
-    Kind { word: "distribution of episodes", ending: "toml", files: embedded::EPISODES };
+pub const EPISODES: Kind = Kind {
+    word: "distribution of episodes",
+    ending: "toml",
+    files: embedded::EPISODES,
+    references: &[
+        Reference { path: &["scenario"], kind: &SCENARIO },
+        Reference { path: &["cycles", EACH, "name"], kind: &CYCLE },
+    ],
+};
 
 /// Weights of the reward's terms: `rewards/*.toml`.
-pub const REWARD: Kind = Kind { word: "reward", ending: "toml", files: embedded::REWARDS };
+pub const REWARD: Kind = Kind { word: "reward", ending: "toml", files: embedded::REWARDS, references: &[] };

@@ -277,4 +277,29 @@ mod tests {
         let training = cycles("train-v1");
         assert!(cycles("test-v0").iter().all(|cycle| !training.contains(cycle)));
     }
+
+    #[test]
+    fn files_named_by_a_distribution_are_looked_for_beside_it() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let write = |name: &str, text: &str| {
+            std::fs::write(folder.path().join(name), text).expect("written");
+            folder.path().join(name).to_str().expect("plain name").to_owned()
+        };
+        let cycle = write("stop-and-go.csv", "time_s,speed_km_h\n0,0\n200,50\n400,0\n");
+        let scenario = write("cold.toml", "base = \"jeffs2019/case1-1\"\ncycle = \"stop-and-go.csv\"\n");
+        let built_in = library::text(EPISODES, "train-v1").expect("built in");
+        let section = |head: &str| built_in.find(head).expect("a section");
+        let ranges = &built_in[section("[ranges]")..section("[[cycles]]")];
+        let head = "description = \"one cycle\"\nscenario = \"cold.toml\"\n\
+                    cycles = [{ name = \"stop-and-go.csv\" }, { name = \"nedc\" }]\n";
+        let episodes = write("mine.toml", &format!("{head}{ranges}"));
+        let garage = Garage::default();
+        let distribution = Distribution::load(&episodes, &garage).expect("beside it");
+        let mut random = Random::seeded(5);
+        let trips: Vec<Trip> = (0..50).map(|_| distribution.draw(&mut random)).collect();
+        assert!(trips.iter().all(|trip| *trip.origin == *scenario));
+        assert!(trips.iter().any(|trip| *trip.cycle == *cycle));
+        assert!(trips.iter().any(|trip| &*trip.cycle == "nedc"));
+        assert_eq!(garage.experiment(&scenario).expect("loaded").cycle.duration_s(), 400);
+    }
 }

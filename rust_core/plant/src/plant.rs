@@ -108,7 +108,7 @@ impl Plant {
     /// # Errors
     /// The refrigerant is unknown or its table unusable with these parameters.
     pub fn new(vehicle: VehicleParameters) -> PlantResult<Self> {
-        let table = RefrigerantTable::built_in(&vehicle.refrigerant)?;
+        let table = RefrigerantTable::load(&vehicle.refrigerant)?;
         Ok(Self {
             ranges: ActuatorRanges::of(&vehicle),
             battery: Battery::new(&vehicle.battery),

@@ -297,7 +297,7 @@ fn leakage_makes_the_lowest_speed_a_poor_choice() {
 
 #[test]
 fn parameters_that_contradict_the_table_are_refused_by_name() {
-    let table = || hp_plant::media::refrigerant::RefrigerantTable::built_in("R134a").expect("built in");
+    let table = || hp_plant::media::refrigerant::RefrigerantTable::load("R134a").expect("built in");
     let mut high = parameters();
     high.maximum_pressure_bar = 40.0;
     assert_eq!(RefrigerationCycle::new(high, table()).expect_err("too high").key, "maximum_pressure_bar");

@@ -1,16 +1,27 @@
 //! Kinds of configuration files that a trip is made from.
 
-use hp_plant::config::library::Kind;
+use hp_plant::config::kinds::VEHICLE;
+use hp_plant::config::library::{Kind, Reference};
 
 mod embedded {
     include!(concat!(env!("OUT_DIR"), "/embedded.rs"));
 }
 
 /// Rules and their parameters: `controllers/*.toml`.
-pub const CONTROLLER: Kind = Kind { word: "controller", ending: "toml", files: embedded::CONTROLLERS };
+pub const CONTROLLER: Kind =
+    Kind { word: "controller", ending: "toml", files: embedded::CONTROLLERS, references: &[] };
 
 /// A scenario: `scenarios/**/*.toml`.
-pub const SCENARIO: Kind = Kind { word: "scenario", ending: "toml", files: embedded::SCENARIOS };
+pub const SCENARIO: Kind = Kind {
+    word: "scenario",
+    ending: "toml",
+    files: embedded::SCENARIOS,
+    references: &[
+        Reference { path: &["vehicle"], kind: &VEHICLE },
+        Reference { path: &["cycle"], kind: &CYCLE },
+        Reference { path: &["controller"], kind: &CONTROLLER },
+    ],
+};
 
 /// Speed against time: `cycles/*.csv`.
-pub const CYCLE: Kind = Kind { word: "drive cycle", ending: "csv", files: embedded::CYCLES };
+pub const CYCLE: Kind = Kind { word: "drive cycle", ending: "csv", files: embedded::CYCLES, references: &[] };

@@ -14,11 +14,11 @@ use serde::{Deserialize, Serialize};
 pub struct ScenarioParameters {
     /// What this scenario is, in a sentence.
     pub description: String,
-    /// Vehicle file.
+    /// Name or path of the vehicle.
     pub vehicle: String,
-    /// Drive cycle file.
+    /// Name or path of the drive cycle.
     pub cycle: String,
-    /// Controller file.
+    /// Name or path of the controller.
     pub controller: String,
     /// Climate.
     pub climate: ClimateParameters,

@@ -1,13 +1,19 @@
 //! Kinds of configuration files that a plant is made from.
 
-use crate::config::library::Kind;
+use crate::config::library::{Kind, Reference};
 
 mod embedded {
     include!(concat!(env!("OUT_DIR"), "/embedded.rs"));
 }
 
 /// A vehicle: `vehicles/*.toml`.
-pub const VEHICLE: Kind = Kind { word: "vehicle", ending: "toml", files: embedded::VEHICLES };
+pub const VEHICLE: Kind = Kind {
+    word: "vehicle",
+    ending: "toml",
+    files: embedded::VEHICLES,
+    references: &[Reference { path: &["refrigerant"], kind: &REFRIGERANT }],
+};
 
 /// Properties of a refrigerant: `refrigerants/*.csv`.
-pub const REFRIGERANT: Kind = Kind { word: "refrigerant", ending: "csv", files: embedded::REFRIGERANTS };
+pub const REFRIGERANT: Kind =
+    Kind { word: "refrigerant", ending: "csv", files: embedded::REFRIGERANTS, references: &[] };

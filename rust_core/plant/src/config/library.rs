@@ -1,7 +1,8 @@
 //! Finding, merging and checking configuration files.
 //!
 //! A name is looked up among the files compiled into the crate that owns the kind, then on disk. A file may name a `base` whose
-//! values it replaces. Overrides replace single values by dotted key.
+//! values it replaces. A relative path inside a file counts from the folder of that file, any other one from the working
+//! folder. Overrides replace single values by dotted key.
 
 use super::Validate;
 use crate::error::{PlantError, PlantResult};
@@ -21,6 +22,42 @@ pub struct Kind {
     pub ending: &'static str,
     /// Names and texts of the files compiled in.
     pub files: &'static [(&'static str, &'static str)],
+    /// Keys under which its files name other files, besides `base`.
+    pub references: &'static [Reference],
+}
+
+/// A key under which a file names another one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Reference {
+    /// Keys from the outermost section inwards; [`EACH`] stands for all entries of a list.
+    pub path: &'static [&'static str],
+    /// Kind of the other file.
+    pub kind: &'static Kind,
+}
+
+/// All entries of a list in [`Reference::path`].
+pub const EACH: &str = "[]";
+
+impl Kind {
+    /// Whether a file of this name is compiled in.
+    fn holds(&self, name: &str) -> bool {
+        self.files.iter().any(|(file, _)| *file == name)
+    }
+
+    /// Whether a name is the path of a file on disk.
+    fn on_disk(&self, name: &str) -> bool {
+        !self.holds(name) && Path::new(name).extension().is_some_and(|found| found == self.ending)
+    }
+
+    /// Name or path, seen from the working folder, of what `file` of this kind names.
+    fn named_by(&self, file: &str, kind: &Self, named: &str) -> String {
+        match Path::new(file).parent() {
+            Some(folder) if self.on_disk(file) && kind.on_disk(named) => {
+                folder.join(named).to_string_lossy().into_owned()
+            }
+            _ => named.to_owned(),
+        }
+    }
 }
 
 /// Names of the files compiled in.
@@ -37,9 +74,8 @@ pub fn text(kind: Kind, name: &str) -> PlantResult<String> {
     if let Some((_, text)) = kind.files.iter().find(|(file, _)| *file == name) {
         return Ok((*text).to_owned());
     }
-    let path = Path::new(name);
-    if path.extension().is_some_and(|found| found == kind.ending) {
-        return std::fs::read_to_string(path)
+    if kind.on_disk(name) {
+        return std::fs::read_to_string(name)
             .map_err(|error| PlantError::Syntax { file: name.to_owned(), message: error.to_string() });
     }
     Err(PlantError::Unknown {
@@ -125,14 +161,39 @@ fn merged(kind: Kind, name: &str, depth: usize) -> PlantResult<Table> {
         return Err(syntax("the chain of `base` files is too long or closed".into()));
     }
     let mut table: Table = toml::from_str(&text(kind, name)?).map_err(|error| syntax(error.to_string()))?;
+    for Reference { path, kind: other } in kind.references {
+        if let [section, rest @ ..] = path
+            && let Some(value) = table.get_mut(*section)
+        {
+            change_texts(value, rest, &|named| kind.named_by(name, other, named));
+        }
+    }
     match table.remove("base") {
         None => Ok(table),
         Some(Value::String(base)) => {
-            let mut whole = merged(kind, &base, depth + 1)?;
+            let mut whole = merged(kind, &kind.named_by(name, &kind, &base), depth + 1)?;
             merge(&mut whole, table);
             Ok(whole)
         }
         Some(other) => Err(syntax(format!("`base` is {other}, but must be the name of a {}", kind.word))),
+    }
+}
+
+/// Changes the texts at a place; what is of another type is refused when the parameters are read.
+fn change_texts(value: &mut Value, path: &[&str], change: &impl Fn(&str) -> String) {
+    match (path, value) {
+        ([], Value::String(text)) => *text = change(text),
+        ([EACH, rest @ ..], Value::Array(entries)) => {
+            for entry in entries {
+                change_texts(entry, rest, change);
+            }
+        }
+        ([key, rest @ ..], Value::Table(table)) => {
+            if let Some(inner) = table.get_mut(*key) {
+                change_texts(inner, rest, change);
+            }
+        }
+        _ => {}
     }
 }
 

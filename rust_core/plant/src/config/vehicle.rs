@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 pub struct VehicleParameters {
     /// What this vehicle is, in a sentence.
     pub description: String,
-    /// Name of the refrigerant table.
+    /// Name or path of the refrigerant's table.
     pub refrigerant: String,
     /// Longitudinal dynamics.
     pub body: BodyParameters,

@@ -2,6 +2,8 @@
 //!
 //! `configs/refrigerants/make_table.py` writes the tables; all values are SI, temperatures in kelvin.
 
+use crate::config::kinds::REFRIGERANT;
+use crate::config::library;
 use crate::error::{PlantError, PlantResult};
 use crate::numerics::cubic_table::CubicTable;
 use crate::numerics::dual::Real;
@@ -49,9 +51,6 @@ const EVAPORATING_COLUMNS: usize = PRESSURE + 1;
 const CONDENSING_COLUMNS: usize = 12;
 const ISOBAR_TEMPERATURE: usize = 24;
 const ISOBAR_TEMPERATURE_COLUMNS: usize = 8;
-
-/// Names that [`RefrigerantTable::built_in`] knows.
-pub const BUILT_IN_REFRIGERANTS: [&str; 2] = ["R134a", "R1234yf"];
 
 /// Superheated vapour at the compressor inlet.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -131,23 +130,14 @@ pub struct RefrigerantTable {
 }
 
 impl RefrigerantTable {
-    /// A refrigerant that comes with the crate; upper and lower case are the same.
+    /// Loads a refrigerant by name, in upper or lower case, or by the path of its table.
     ///
     /// # Errors
-    /// No table of this name.
-    pub fn built_in(name: &str) -> PlantResult<Self> {
-        let text = match name.to_ascii_lowercase().as_str() {
-            "r134a" => include_str!("../../../../configs/refrigerants/r134a.csv"),
-            "r1234yf" => include_str!("../../../../configs/refrigerants/r1234yf.csv"),
-            _ => {
-                return Err(PlantError::Unknown {
-                    kind: "refrigerant",
-                    name: name.to_owned(),
-                    available: BUILT_IN_REFRIGERANTS.join(", "),
-                });
-            }
-        };
-        Self::from_csv(name, text)
+    /// No table of this name, or a file that is none.
+    pub fn load(name: &str) -> PlantResult<Self> {
+        let same = |(known, _): &&(&'static str, _)| known.eq_ignore_ascii_case(name);
+        let known = REFRIGERANT.files.iter().find(same).map_or(name, |(known, _)| known);
+        Self::from_csv(name, &library::text(REFRIGERANT, known)?)
     }
 
     /// Reads a table as `make_table.py` writes it.
@@ -292,8 +282,8 @@ mod tests {
 
     #[test]
     fn saturation_temperature_inverts_pressure() -> PlantResult<()> {
-        for name in BUILT_IN_REFRIGERANTS {
-            let table = RefrigerantTable::built_in(name)?;
+        for name in library::names(REFRIGERANT) {
+            let table = RefrigerantTable::load(name)?;
             for temperature in [220.0, 273.15, 350.0] {
                 let pressure = table.saturation_pressure_pa(temperature);
                 assert!((table.saturation_temperature_k(pressure) - temperature).abs() < 1e-9);
@@ -314,6 +304,22 @@ mod tests {
             let message = RefrigerantTable::from_csv("x", &text).expect_err("a faulty table").to_string();
             assert!(message.contains(reason), "{message}");
         }
-        assert!(RefrigerantTable::built_in("R744").is_err());
+    }
+
+    #[test]
+    fn refrigerants_are_found_in_any_case_and_by_path() {
+        let pressure_pa = |name: &str| {
+            let table = RefrigerantTable::load(name).unwrap_or_else(|error| panic!("{error}"));
+            table.saturation_pressure_pa(280.0)
+        };
+        let r1234yf = library::text(REFRIGERANT, "r1234yf").expect("built in");
+        let file = tempfile::Builder::new().suffix(".csv").tempfile().expect("a temporary file");
+        std::fs::write(file.path(), r1234yf).expect("written");
+        let path = file.path().to_str().expect("plain name");
+        assert_eq!(pressure_pa("R1234yf"), pressure_pa(path));
+        assert_eq!(pressure_pa("R134A"), pressure_pa("r134a"));
+        assert_ne!(pressure_pa("R134a"), pressure_pa(path));
+        let message = RefrigerantTable::load("R744").expect_err("none").to_string();
+        assert!(["R744", "r134a", "r1234yf", ".csv"].iter().all(|part| message.contains(part)), "{message}");
     }
 }

@@ -41,7 +41,7 @@ pub fn parameters() -> RefrigerationParameters {
 
 /// The test loop with R134a.
 pub fn cycle() -> RefrigerationCycle {
-    let table = RefrigerantTable::built_in("R134a").expect("R134a is built in");
+    let table = RefrigerantTable::load("R134a").expect("R134a is built in");
     RefrigerationCycle::new(parameters(), table).expect("the parameters fit the table")
 }
 
