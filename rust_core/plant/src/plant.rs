@@ -16,7 +16,6 @@ use crate::config::kinds::VEHICLE;
 use crate::config::library::{self, Override};
 use crate::config::vehicle::VehicleParameters;
 use crate::control::thermal_switch::ThermalSwitches;
-use crate::control::vehicle_controls::{ControlGains, Period};
 use crate::error::PlantResult;
 use crate::flows::{Flow, Flows};
 use crate::ledger::{self, LedgerEntry, StoredEnergyChange};
@@ -24,7 +23,10 @@ use crate::media::air::AirProperties;
 use crate::media::refrigerant::RefrigerantTable;
 use crate::numerics::thermal_network::{MAXIMUM_NODES, NodeValues};
 use crate::state::State;
+use controls::{ControlGains, Period};
 use serde::{Deserialize, Serialize};
+
+mod controls;
 
 /// Period of all controllers and of a plant step [s].
 pub const CONTROL_PERIOD_S: f64 = 1.0;
@@ -85,8 +87,8 @@ pub struct Plant {
     pub refrigeration: RefrigerationCycle,
     /// Refrigerant properties.
     pub refrigerant: RefrigerantTable,
-    pub(crate) branches: BranchTable,
-    pub(crate) gains: ControlGains,
+    branches: BranchTable,
+    gains: ControlGains,
     substeps: u32,
 }
 

@@ -1,14 +1,10 @@
-//! Whole runs: a scenario with its vehicle, cycle and controller, from start to arrival.
+//! A scenario with its vehicle, cycle and controller, loaded and ready to run.
 
 use crate::controllers::Rules;
 use crate::controllers::file::Controller;
 use crate::drive_cycle::DriveCycle;
-use crate::heat_demand_commander;
 use crate::kinds::SCENARIO;
-use crate::run::Run;
 use crate::scenario::{ClimateParameters, ScenarioParameters};
-use crate::summary::Summary;
-use hp_plant::command::Command;
 use hp_plant::config::initial::InitialParameters;
 use hp_plant::config::library::{self, Override};
 use hp_plant::error::{PlantError, PlantResult};
@@ -84,19 +80,6 @@ impl Experiment {
         self
     }
 
-    /// The vehicle before the first step.
-    #[must_use]
-    pub fn start(&self) -> Run {
-        let state = self.plant.parked(&self.initial);
-        Run {
-            memory: self.rules.awake(&self.plant, &state),
-            state,
-            steps: 0,
-            record: None,
-            summary: Summary::default(),
-        }
-    }
-
     /// What the surroundings do during a step.
     #[must_use]
     pub fn disturbance(&self, step: usize) -> Disturbance {
@@ -109,18 +92,5 @@ impl Experiment {
             solar_gain_w: self.climate.solar_gain_w,
             occupants: f64::from(self.climate.occupants),
         }
-    }
-
-    /// Command of the rules, heatDemandCommander and connection schedule for the next step.
-    pub fn rule_based_command(&self, run: &mut Run) -> Command {
-        let time_s = run.state.time_s;
-        let requests_w = heat_demand_commander::requests_w(&self.scenario.heat_demand, time_s);
-        let mut demand = self.rules.demand(&self.plant, &run.state, &mut run.memory, &requests_w);
-        heat_demand_commander::apply_schedule(
-            &self.scenario.connection_schedule,
-            time_s,
-            &mut demand.connections,
-        );
-        self.plant.ranges.encode(&demand)
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::controllers::RuleMemory;
 use crate::experiment::Experiment;
+use crate::heat_demand_commander;
 use crate::summary::Summary;
 use hp_plant::command::Command;
 use hp_plant::flows::Flow;
@@ -65,6 +66,32 @@ pub struct Trajectory {
 }
 
 impl Experiment {
+    /// The vehicle before the first step.
+    #[must_use]
+    pub fn start(&self) -> Run {
+        let state = self.plant.parked(&self.initial);
+        Run {
+            memory: self.rules.awake(&self.plant, &state),
+            state,
+            steps: 0,
+            record: None,
+            summary: Summary::default(),
+        }
+    }
+
+    /// Command of the rules, heatDemandCommander and connection schedule for the next step.
+    pub fn rule_based_command(&self, run: &mut Run) -> Command {
+        let time_s = run.state.time_s;
+        let requests_w = heat_demand_commander::requests_w(&self.scenario.heat_demand, time_s);
+        let mut demand = self.rules.demand(&self.plant, &run.state, &mut run.memory, &requests_w);
+        heat_demand_commander::apply_schedule(
+            &self.scenario.connection_schedule,
+            time_s,
+            &mut demand.connections,
+        );
+        self.plant.ranges.encode(&demand)
+    }
+
     /// One step with a command; tells why the run is over, if it is.
     pub fn step(&self, run: &mut Run, command: &Command) -> Option<EndReason> {
         let disturbance = self.disturbance(run.steps);

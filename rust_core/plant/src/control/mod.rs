@@ -1,4 +1,3 @@
-//! The plant's own switches and controls.
+//! The plant's own switches.
 
 pub mod thermal_switch;
-pub(crate) mod vehicle_controls;

@@ -4,7 +4,7 @@
 //! is left of the bookkeeping: each operation is one multiplication and subtraction at a fixed place.
 
 use super::elementary::fused;
-use super::thermal_network::{LinkPorts, MAXIMUM_NODES, Node};
+use super::topology::{LinkPorts, MAXIMUM_NODES, Node};
 
 /// Largest number of matrix entries that are not always zero.
 pub(super) const MAXIMUM_ENTRIES: usize = 64;

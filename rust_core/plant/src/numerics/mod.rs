@@ -8,3 +8,4 @@ pub mod interpolation;
 pub mod root;
 pub mod thermal_network;
 pub mod three_equations;
+pub mod topology;

@@ -1,5 +1,6 @@
 //! The plant's own controls, once a control period: connections, pumps, switches, PTC, condensing pressure.
 
+use super::{CONTROL_PERIOD_S, Disturbance, Plant};
 use crate::circuits::assembly::NODES;
 use crate::circuits::branches::{self, BRANCH_PLACES, Branch, BranchFlows, BranchTemperatures, BranchValues};
 use crate::command::Demand;
@@ -8,14 +9,13 @@ use crate::components::pid::ResetGains;
 use crate::components::pump;
 use crate::config::vehicle::VehicleParameters;
 use crate::numerics::thermal_network::Node;
-use crate::plant::{CONTROL_PERIOD_S, Disturbance, Plant};
 use crate::state::State;
 
 /// Pascal in a bar.
 const PASCAL_PER_BAR: f64 = 1e5;
 
 /// What the controls fixed for one control period.
-pub(crate) struct Period {
+pub(super) struct Period {
     pub demand: Demand,
     pub ventilation: Ventilation,
     pub branches_w_k: BranchValues,
@@ -28,7 +28,7 @@ pub(crate) struct Period {
 
 /// What the controls need of gains and time constants, worked out for the control period.
 #[derive(Debug, Clone)]
-pub(crate) struct ControlGains {
+pub(super) struct ControlGains {
     pub ptc: ResetGains,
     pub pressure: ResetGains,
     flow_approach: f64,
@@ -71,7 +71,7 @@ impl Plant {
     }
 
     /// The plant's own controls, once a control period: connections, pumps, switches, PTC, pressure.
-    pub(crate) fn begin_period(
+    pub(super) fn begin_period(
         &self,
         state: &mut State,
         demand: Demand,

@@ -1,0 +1,60 @@
+//! Nodes of a thermal network and what connects them, without any numbers.
+
+/// Largest number of nodes.
+pub const MAXIMUM_NODES: usize = 16;
+
+/// Index of a node in temperatures and heat sources.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Node(u8);
+
+impl Node {
+    /// Node number `position` of a topology.
+    #[must_use]
+    pub const fn new(position: u8) -> Self {
+        Self(position)
+    }
+
+    /// Position in arrays of node values.
+    #[must_use]
+    #[inline]
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Which nodes a link connects; `None` is the surroundings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinkPorts {
+    /// Node that loses the heat flow.
+    pub loses: Option<Node>,
+    /// Node that gains it.
+    pub gains: Option<Node>,
+    /// Node whose temperature drives it.
+    pub hot: Option<Node>,
+    /// Node whose temperature opposes it.
+    pub cold: Option<Node>,
+}
+
+impl LinkPorts {
+    /// Plain conduction between two nodes.
+    #[must_use]
+    pub const fn between(from: Node, to: Node) -> Self {
+        Self { loses: Some(from), gains: Some(to), hot: Some(from), cold: Some(to) }
+    }
+
+    /// Plain conduction from a node to the surroundings; their temperature is the (negative) offset.
+    #[must_use]
+    pub const fn to_surroundings(from: Node) -> Self {
+        Self { loses: Some(from), gains: None, hot: Some(from), cold: None }
+    }
+}
+
+/// Which nodes there are and what connects them.
+pub trait Topology {
+    /// Number of nodes.
+    const NODES: usize;
+    /// Links; states of a step come in the same order.
+    const LINKS: &'static [LinkPorts];
+    /// Nodes whose temperatures are wanted most often: they are eliminated last, so known first.
+    const KNOWN_FIRST: &'static [Node];
+}
