@@ -1,5 +1,7 @@
 //! Newton steps for three equations in three unknowns.
 
+use nalgebra::Vector3;
+
 /// Largest magnitude; not a number where one of them is none.
 #[inline]
 #[must_use]
@@ -10,9 +12,11 @@ pub fn largest(values: [f64; 3]) -> f64 {
 }
 
 /// Inverse of a matrix of three rows, by Cramer's rule.
+///
+/// nalgebra's `try_inverse` divides nine times instead of once and its LU searches pivots; a plant step feels both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inverse {
-    columns: [[f64; 3]; 3],
+    columns: [Vector3<f64>; 3],
     per_determinant: f64,
 }
 
@@ -21,12 +25,9 @@ impl Inverse {
     #[inline]
     #[must_use]
     pub fn of(rows: [[f64; 3]; 3]) -> Option<Self> {
-        let [a, b, c] = rows;
-        let cross = |u: [f64; 3], v: [f64; 3]| {
-            [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
-        };
-        let columns = [cross(b, c), cross(c, a), cross(a, b)];
-        let determinant = a[0] * columns[0][0] + a[1] * columns[0][1] + a[2] * columns[0][2];
+        let [a, b, c] = rows.map(Vector3::from);
+        let columns = [b.cross(&c), c.cross(&a), a.cross(&b)];
+        let determinant = a.dot(&columns[0]);
         (determinant != 0.0).then_some(Self { columns, per_determinant: determinant.recip() })
     }
 
@@ -35,9 +36,7 @@ impl Inverse {
     #[must_use]
     pub fn step(&self, errors: [f64; 3]) -> [f64; 3] {
         let [u, v, w] = self.columns;
-        std::array::from_fn(|k| {
-            -(errors[0] * u[k] + errors[1] * v[k] + errors[2] * w[k]) * self.per_determinant
-        })
+        (-(u * errors[0] + v * errors[1] + w * errors[2]) * self.per_determinant).into()
     }
 }
 
