@@ -19,6 +19,8 @@ __all__ = [
     "names",
     "observation_table",
     "plant_step_seconds",
+    "reference_policy",
+    "reference_policy_names",
     "reward_parts",
     "signals",
     "totals",
@@ -229,3 +231,13 @@ def names(kind_word: str) -> list[str]:
 
 def config_text(kind_word: str, name: str) -> str:
     """Text of a configuration file by name or path."""
+
+def reference_policy_names() -> list[str]:
+    """Names of the reference policies: their files in `agents/reference_policies` without ending, sorted."""
+
+def reference_policy(name: str) -> bytes:
+    """Bytes of the file of a reference policy.
+
+    Raises:
+        ConfigurationError: There is none of this name.
+    """

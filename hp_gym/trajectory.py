@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Final
 from hp_gym import signals
 from hp_gym.files import atomic_write, require_suffix
 
-# pandas and matplotlib take a second to import: they are loaded by the methods that need them.
+# pandas takes a second to import: it is loaded by the methods that need it.
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
 
     import numpy as np
     import pandas as pd
-    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
 TABLE_SUFFIXES: Final = (".csv", ".parquet")
@@ -87,18 +86,3 @@ class Trajectory:
                 table.to_csv(temporary, index=False)
             else:
                 table.to_parquet(temporary, index=False)
-
-    def plot(self, path: str | os.PathLike[str] | None = None) -> Figure:
-        """Draws the run.
-
-        Args:
-            path: Picture to write (.png, .svg or .pdf). Without it the figure belongs to pyplot, and
-                `matplotlib.pyplot.show()` opens it.
-
-        Raises:
-            ValueError: The path ends otherwise.
-            OSError: The file cannot be written; one that stood there stays as it was.
-        """
-        from hp_gym import plotting
-
-        return plotting.plot(self, path)

@@ -1,6 +1,7 @@
 //! Python bindings: conversions only, no logic.
 
 mod actions;
+mod embedded;
 mod episode;
 mod errors;
 mod experiment;
@@ -18,6 +19,8 @@ const BUILT_FOR: &str = if cfg!(all(target_feature = "avx2", target_feature = "f
 /// Compiled core of `hp_gym`.
 #[pymodule]
 mod _core {
+    #[pymodule_export]
+    use super::embedded::{reference_policy, reference_policy_names};
     #[pymodule_export]
     use super::episode::{Episode, observation_table, reward_parts};
     #[pymodule_export]

@@ -1,0 +1,59 @@
+"""The command line `hp-gym`."""
+
+from typing import Annotated
+
+import typer
+
+from hp_gym.cli.benchmark_command import benchmark
+from hp_gym.cli.calibrate_command import calibrate
+from hp_gym.cli.export_command import export
+from hp_gym.cli.reproduce_command import reproduce
+from hp_gym.cli.run_command import run
+from hp_gym.cli.scenarios_command import scenarios
+from hp_gym.cli.speed_command import speed
+from hp_gym.cli.train_command import train
+from hp_gym.cli.tune_command import tune
+
+app = typer.Typer(
+    name="hp-gym",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+for command in (
+    benchmark,
+    run,
+    scenarios,
+    reproduce,
+    calibrate,
+    tune,
+    train,
+    export,
+    speed,
+):
+    app.command()(command)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from hp_gym import __version__
+
+        typer.echo(f"hp-gym {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    *,
+    version: Annotated[
+        bool,
+        typer.Option("--version", help="Show the version and stop.", callback=_print_version, is_eager=True),
+    ] = False,
+) -> None:
+    """An electric vehicle's heat pump and thermal system, simulated."""
+    del version
+
+
+def main() -> None:
+    """Runs the command line."""
+    app()

@@ -1,0 +1,42 @@
+"""What every command shares: results on standard output, and how a command fails."""
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from typing import Final, NoReturn
+
+import typer
+from rich.console import Console
+
+console: Final = Console(highlight=False)
+"""For results that people read."""
+
+USAGE_ERROR: Final = 2
+
+
+def print_json(data: object) -> None:
+    """Prints data as JSON; a number that JSON does not have becomes null."""
+    typer.echo(json.dumps(_finite(data), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def fail(reason: str | Exception) -> NoReturn:
+    """Ends the command with one line on standard error.
+
+    Raises:
+        typer.Exit: Always, with exit code 2.
+    """
+    message = str(reason)
+    if isinstance(reason, OSError) and reason.strerror and reason.filename:
+        message = f"{reason.filename}: {reason.strerror}"
+    typer.echo(f"hp-gym: {' '.join(message.split())}", err=True)
+    raise typer.Exit(USAGE_ERROR)
+
+
+def _finite(data: object) -> object:
+    if isinstance(data, float) and not math.isfinite(data):
+        return None
+    if isinstance(data, Mapping):
+        return {key: _finite(value) for key, value in data.items()}
+    if isinstance(data, Sequence) and not isinstance(data, str):
+        return [_finite(value) for value in data]
+    return data
