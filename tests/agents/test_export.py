@@ -1,7 +1,9 @@
 """`hp-gym export`: ONNX that is proved equal, zip files only on request."""
 
 import json
+import sys
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -132,6 +134,19 @@ def test_a_zip_file_is_loaded_on_request_only(tmp_path: Path) -> None:
     assert result.exit_code == 0, result.output
     assert "Warning: loading a zip file" in result.stderr
     assert policies.load(tmp_path / "policy.onnx").environment["control_interval_s"] == 20
+
+
+def test_a_zip_file_may_name_a_schedule_of_a_module_that_is_gone(tmp_path: Path, monkeypatch: Any) -> None:
+    gone = ModuleType("gone")
+    exec("def rate(remaining):\n    return 1e-4 * remaining", gone.__dict__)
+    path = tmp_path / "model.zip"
+    with monkeypatch.context() as patch:
+        patch.setitem(sys.modules, "gone", gone)
+        model = untrained()
+        model.learning_rate = gone.rate
+        model.save(path)
+    result = run(path, "--out", tmp_path / "policy.onnx", "--control-interval-s", 20, "--allow-code")
+    assert result.exit_code == 0, result.output
 
 
 def test_zip_files_that_do_not_fit_are_refused(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ import json
 import os
 import zipfile
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.vec_env import VecNormalize
@@ -15,6 +15,9 @@ from hp_gym.agents.policies.saved_policy import PolicyEnvironment, SavedPolicy
 
 WARNING = "loading a zip file of stable-baselines3 can run any code that its author put there"
 """What a user is told who allows it."""
+
+_NOT_NEEDED: Final = {"learning_rate": 0.0, "lr_schedule": None}
+"""What only training needs: a file names a schedule by its module, which may have moved since."""
 
 
 def load_sb3_zip(
@@ -42,7 +45,7 @@ def load_sb3_zip(
         raise PolicyError(message)
     algorithm = _algorithm(name)
     try:
-        model = algorithm.load(name, device="cpu")
+        model = algorithm.load(name, device="cpu", custom_objects=_NOT_NEEDED)
         wrapper = None if normalisation is None else _wrapper(normalisation)
     # Unpickling raises whatever the pickled objects raise.
     except Exception as error:
