@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import csv
+import math
+import os
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from hp_gym import signals
+from hp_gym import extras, signals
 from hp_gym.files import atomic_write, require_suffix
 
 # pandas takes a second to import: it is loaded by the methods that need it.
 if TYPE_CHECKING:
-    import os
     from collections.abc import Mapping
+    from pathlib import Path
 
     import numpy as np
     import pandas as pd
@@ -67,8 +70,13 @@ class Trajectory:
         return dict(signals.UNITS)
 
     def to_pandas(self) -> pd.DataFrame:
-        """Returns a table, one row a second, one column a signal."""
-        import pandas as pd
+        """Returns a table, one row a second, one column a signal.
+
+        Raises:
+            MissingExtraError: pandas is not installed.
+        """
+        with extras.needed("benchmark"):
+            import pandas as pd
 
         return pd.DataFrame(self.values.copy(), columns=list(self.columns))
 
@@ -77,12 +85,22 @@ class Trajectory:
 
         Raises:
             ValueError: The path ends otherwise.
+            MissingExtraError: For .parquet, pandas and pyarrow are not installed.
             OSError: The file cannot be written; one that stood there stays as it was.
         """
         suffix = require_suffix(path, TABLE_SUFFIXES)
-        table = self.to_pandas()
+        if suffix == ".parquet":
+            extras.require("benchmark", "pandas", "pyarrow")
         with atomic_write(path) as temporary:
             if suffix == ".csv":
-                table.to_csv(temporary, index=False)
+                self._write_csv(temporary)
             else:
-                table.to_parquet(temporary, index=False)
+                self.to_pandas().to_parquet(temporary, index=False)
+
+    def _write_csv(self, path: Path) -> None:
+        """Writes what pandas would, which need not be installed: shortest exact numbers, nothing for NaN."""
+        with path.open("w", encoding="utf-8", newline="") as file:
+            writer = csv.writer(file, lineterminator=os.linesep)
+            writer.writerow(self.columns)
+            for row in self.values.tolist():
+                writer.writerow("" if math.isnan(value) else value for value in row)

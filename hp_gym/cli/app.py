@@ -7,6 +7,7 @@ import typer
 from hp_gym.cli.benchmark_command import benchmark
 from hp_gym.cli.calibrate_command import calibrate
 from hp_gym.cli.export_command import export
+from hp_gym.cli.output import one_line_for_missing_packages
 from hp_gym.cli.reproduce_command import reproduce
 from hp_gym.cli.run_command import run
 from hp_gym.cli.scenarios_command import scenarios
@@ -31,7 +32,7 @@ for command in (
     export,
     speed,
 ):
-    app.command()(command)
+    app.command()(one_line_for_missing_packages(command))
 
 
 def _print_version(wanted: bool) -> None:

@@ -35,6 +35,9 @@ def export(
     """Writes a policy as ONNX, once it is proved equal on observations of driven trips."""
     from dataclasses import asdict
 
+    from hp_gym import extras
+
+    extras.require("export")
     from hp_gym.agents.policies import save
     from hp_gym.agents.policies.equality import compare
     from hp_gym.agents.policies.onnx_file import to_model
@@ -56,8 +59,6 @@ def export(
         else:
             with atomic_write(out) as temporary:
                 temporary.write_bytes(model.SerializeToString())
-    except ImportError as error:
-        fail(f"{error}; `hp-gym export` needs the extra `agents`")
     except (ValueError, OSError) as error:
         fail(error)
     if json:

@@ -1,8 +1,9 @@
 """What every command shares: results on standard output, and how a command fails."""
 
+import functools
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Final, NoReturn
 
 import typer
@@ -30,6 +31,22 @@ def fail(reason: str | Exception) -> NoReturn:
         message = f"{reason.filename}: {reason.strerror}"
     typer.echo(f"hp-gym: {' '.join(message.split())}", err=True)
     raise typer.Exit(USAGE_ERROR)
+
+
+def one_line_for_missing_packages(command: Callable[..., None]) -> Callable[..., None]:
+    """Wraps a command so that a package or system library that cannot be loaded ends it with one line."""
+
+    @functools.wraps(command)
+    def wrapped(*arguments: object, **options: object) -> None:
+        try:
+            command(*arguments, **options)
+        except ImportError as error:
+            # A module of our own that is not there is a bug, and its traceback tells where.
+            if (error.name or "").partition(".")[0] == "hp_gym":
+                raise
+            fail(error)
+
+    return wrapped
 
 
 def _finite(data: object) -> object:

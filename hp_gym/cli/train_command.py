@@ -40,11 +40,12 @@ def train(
     # Threads of torch that wait by spinning bring it to a crawl as soon as anything else runs on the machine.
     # Read when torch is loaded, which is below.
     os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
-    try:
-        from hp_gym.agents.training import configuration
-        from hp_gym.agents.training import train as training
-    except ImportError as error:
-        fail(f"{error}; `hp-gym train` needs the extra `agents`")
+    from hp_gym import extras
+
+    extras.require("train")
+    from hp_gym.agents.training import configuration
+    from hp_gym.agents.training import train as training
+
     more = list(changes or ())
     if decisions is not None:
         more.append(f"total_decisions={decisions}")

@@ -7,9 +7,12 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
-from stable_baselines3.common.vec_env.base_vec_env import VecEnv, VecEnvIndices
 
+from hp_gym import extras
 from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
+
+with extras.needed("train"):
+    from stable_baselines3.common.vec_env.base_vec_env import VecEnv, VecEnvIndices
 
 DISCOMFORT: Final = "reward_discomfort"
 """Name of the reward's part for discomfort."""

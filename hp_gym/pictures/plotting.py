@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib import pyplot as plt
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.ticker import MultipleLocator
 
+from hp_gym import extras
 from hp_gym.files import atomic_write, require_suffix
 from hp_gym.pictures import panels
 from hp_gym.pictures.panels import GREEN, GREY
+
+with extras.needed("plot"):
+    import matplotlib as mpl
+    from matplotlib import pyplot as plt
+    from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+    from matplotlib.ticker import MultipleLocator
 
 if TYPE_CHECKING:
     import os

@@ -3,12 +3,15 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from hp_gym import extras
+
 
 class Window:
     """Shows one picture after another with matplotlib; without a display it shows nothing."""
 
     def __init__(self) -> None:
-        import matplotlib.pyplot as plt
+        with extras.needed("plot"):
+            import matplotlib.pyplot as plt
 
         self._figure = plt.figure("EVHeatPump-v0", frameon=False, figsize=(9.6, 5.4))
         self._axes = self._figure.add_axes((0.0, 0.0, 1.0, 1.0))

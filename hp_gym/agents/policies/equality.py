@@ -5,13 +5,16 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-import onnx
 from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
+from hp_gym import extras
 from hp_gym.agents.policies.errors import PolicyError
 from hp_gym.agents.policies.saved_policy import SavedPolicy
 from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
+
+with extras.needed("export"):
+    import onnx
 
 TOLERANCE: Final = 1e-5
 """Largest difference of network outputs that single precision explains."""
@@ -82,7 +85,8 @@ def compare(model: onnx.ModelProto, policy: SavedPolicy, original: Decide | None
     Raises:
         PolicyError: They differ by more than rounding.
     """
-    import onnxruntime
+    with extras.needed("export"):
+        import onnxruntime
 
     recording, trips = record(policy)
     session = onnxruntime.InferenceSession(model.SerializeToString(), providers=["CPUExecutionProvider"])

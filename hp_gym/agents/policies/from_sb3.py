@@ -3,13 +3,9 @@
 from typing import Any
 
 import numpy as np
-import torch
 from gymnasium import spaces
-from stable_baselines3.common.base_class import BaseAlgorithm
-from stable_baselines3.common.torch_layers import FlattenExtractor
-from stable_baselines3.common.vec_env import VecNormalize
 
-from hp_gym import __version__
+from hp_gym import __version__, extras
 from hp_gym.agents.policies.errors import PolicyError
 from hp_gym.agents.policies.saved_policy import (
     Layer,
@@ -19,6 +15,12 @@ from hp_gym.agents.policies.saved_policy import (
     PolicyEnvironment,
     SavedPolicy,
 )
+
+with extras.needed("train"):
+    import torch
+    from stable_baselines3.common.base_class import BaseAlgorithm
+    from stable_baselines3.common.torch_layers import FlattenExtractor
+    from stable_baselines3.common.vec_env import VecNormalize
 
 _ACTIVATIONS = {torch.nn.Tanh: "tanh", torch.nn.ReLU: "relu"}
 

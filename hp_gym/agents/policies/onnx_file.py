@@ -5,13 +5,16 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-import onnx
-from google.protobuf.message import DecodeError
-from onnx import TensorProto, helper, numpy_helper
 
+from hp_gym import extras
 from hp_gym.agents.policies.errors import PolicyError
 from hp_gym.agents.policies.policy_file import METADATA_KEY, assemble, tensors_of
 from hp_gym.agents.policies.saved_policy import MASKED_LOGIT, SavedPolicy
+
+with extras.needed("export"):
+    import onnx
+    from google.protobuf.message import DecodeError
+    from onnx import TensorProto, helper, numpy_helper
 
 # Old enough for runtimes on devices.
 _OPSET: Final = 17

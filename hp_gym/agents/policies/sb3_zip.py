@@ -6,12 +6,14 @@ import zipfile
 from pathlib import Path
 from typing import Any, Final
 
-from stable_baselines3.common.base_class import BaseAlgorithm
-from stable_baselines3.common.vec_env import VecNormalize
-
+from hp_gym import extras
 from hp_gym.agents.policies.errors import PolicyError
 from hp_gym.agents.policies.from_sb3 import from_sb3
 from hp_gym.agents.policies.saved_policy import PolicyEnvironment, SavedPolicy
+
+with extras.needed("train"):
+    from stable_baselines3.common.base_class import BaseAlgorithm
+    from stable_baselines3.common.vec_env import VecNormalize
 
 WARNING = "loading a zip file of stable-baselines3 can run any code that its author put there"
 """What a user is told who allows it."""
@@ -71,8 +73,9 @@ def _wrapper(path: str | os.PathLike[str]) -> VecNormalize:
 
 def _algorithm(name: str) -> type[BaseAlgorithm]:
     """Tells which algorithm wrote a file, without loading what it pickled."""
-    import sb3_contrib
-    import stable_baselines3
+    with extras.needed("train"):
+        import sb3_contrib
+        import stable_baselines3
 
     try:
         with zipfile.ZipFile(name) as archive:

@@ -2,14 +2,16 @@
 
 from typing import Any, Final
 
-import torch
-from sb3_contrib import MaskablePPO, RecurrentPPO
-from stable_baselines3 import PPO, SAC
-from stable_baselines3.common.base_class import BaseAlgorithm
-from stable_baselines3.common.vec_env import VecEnv
-
+from hp_gym import extras
 from hp_gym.agents.training import branches, environments
 from hp_gym.agents.training.configuration import RecurrentPPOHyperparameters, Training
+
+with extras.needed("train"):
+    import torch
+    from sb3_contrib import MaskablePPO, RecurrentPPO
+    from stable_baselines3 import PPO, SAC
+    from stable_baselines3.common.base_class import BaseAlgorithm
+    from stable_baselines3.common.vec_env import VecEnv
 
 _ALGORITHMS: Final[dict[str, tuple[type[BaseAlgorithm], str]]] = {
     "ppo": (PPO, "MlpPolicy"),

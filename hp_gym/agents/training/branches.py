@@ -9,10 +9,14 @@ from collections.abc import Sequence
 from typing import Any, Self
 
 import numpy as np
-import torch
-from sb3_contrib.common.maskable.distributions import MaskableMultiCategoricalDistribution
-from stable_baselines3.common.base_class import BaseAlgorithm
-from stable_baselines3.common.distributions import MultiCategoricalDistribution
+
+from hp_gym import extras
+
+with extras.needed("train"):
+    import torch
+    from sb3_contrib.common.maskable.distributions import MaskableMultiCategoricalDistribution
+    from stable_baselines3.common.base_class import BaseAlgorithm
+    from stable_baselines3.common.distributions import MultiCategoricalDistribution
 
 # The exponential of more has no place in single precision.
 _LARGEST_EXPONENT = 80.0

@@ -10,12 +10,15 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-import torch
-from stable_baselines3.common.base_class import BaseAlgorithm
-from stable_baselines3.common.buffers import ReplayBuffer
 
+from hp_gym import extras
 from hp_gym.agents.training import environments
 from hp_gym.files import atomic_write
+
+with extras.needed("train"):
+    import torch
+    from stable_baselines3.common.base_class import BaseAlgorithm
+    from stable_baselines3.common.buffers import ReplayBuffer
 
 FORMAT_VERSION: Final = 1
 

@@ -4,11 +4,14 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from stable_baselines3.common.vec_env import VecEnv
 
+from hp_gym import extras
 from hp_gym.agents.training.configuration import ComfortConstraintSettings, Training
 from hp_gym.agents.training.environments import scaled_reward
 from hp_gym.agents.training.trips import Decide, Driven, FixedTrips
+
+with extras.needed("train"):
+    from stable_baselines3.common.vec_env import VecEnv
 
 
 class ComfortConstraint:

@@ -3,14 +3,16 @@
 from typing import Any, Final
 
 import numpy as np
-import torch
 from numpy.typing import NDArray
-from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper, VecNormalize
 
-from hp_gym import _core
+from hp_gym import _core, extras
 from hp_gym.agents.training.configuration import Training, TrainingConfigurationError
 from hp_gym.envs import settings
 from hp_gym.envs.sb3 import SB3VecEnv
+
+with extras.needed("train"):
+    import torch
+    from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper, VecNormalize
 
 AMBIENT_ROW: Final = "ambient_temperature_degc"
 CABIN_ROW: Final = "cabin_temperature_degc"

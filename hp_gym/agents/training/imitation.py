@@ -5,18 +5,21 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
-import torch
 from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
-from sb3_contrib.common.maskable.policies import MaskableActorCriticPolicy
-from stable_baselines3.common.on_policy_algorithm import OnPolicyAlgorithm
-from stable_baselines3.common.policies import ActorCriticPolicy, BasePolicy
-from stable_baselines3.common.vec_env import VecNormalize
 
+from hp_gym import extras
 from hp_gym.agents.training import environments
 from hp_gym.agents.training.configuration import ImitationSettings, MaskablePPOTraining, PPOTraining
 from hp_gym.envs.sb3 import DISCOMFORT
 from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
+
+with extras.needed("train"):
+    import torch
+    from sb3_contrib.common.maskable.policies import MaskableActorCriticPolicy
+    from stable_baselines3.common.on_policy_algorithm import OnPolicyAlgorithm
+    from stable_baselines3.common.policies import ActorCriticPolicy, BasePolicy
+    from stable_baselines3.common.vec_env import VecNormalize
 
 OnPolicyTraining: TypeAlias = PPOTraining | MaskablePPOTraining
 

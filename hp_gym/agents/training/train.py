@@ -7,13 +7,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import torch
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-from stable_baselines3.common.base_class import BaseAlgorithm
-from stable_baselines3.common.logger import Logger, TensorBoardOutputFormat
-from stable_baselines3.common.on_policy_algorithm import OnPolicyAlgorithm
-from torch.utils.tensorboard.writer import SummaryWriter
 
+from hp_gym import extras
 from hp_gym.agents.training import algorithms, checkpoint, environments, imitation
 from hp_gym.agents.training.comfort import ComfortConstraint
 from hp_gym.agents.training.configuration import MaskablePPOTraining, PPOTraining, Training
@@ -21,6 +17,13 @@ from hp_gym.agents.training.run_folder import RunFolder
 from hp_gym.agents.training.validation import Figures, Validation
 from hp_gym.agents.training.watch import Run, Watch
 from hp_gym.terminal import progress_console
+
+with extras.needed("train"):
+    import torch
+    from stable_baselines3.common.base_class import BaseAlgorithm
+    from stable_baselines3.common.logger import Logger, TensorBoardOutputFormat
+    from stable_baselines3.common.on_policy_algorithm import OnPolicyAlgorithm
+    from torch.utils.tensorboard.writer import SummaryWriter
 
 
 @dataclass(frozen=True)

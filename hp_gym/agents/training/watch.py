@@ -5,8 +5,8 @@ from time import perf_counter
 from typing import Any
 
 from rich.progress import Progress, TaskID
-from stable_baselines3.common.callbacks import BaseCallback
 
+from hp_gym import extras
 from hp_gym.agents.policies import PolicyEnvironment, SavedPolicy, save
 from hp_gym.agents.policies.from_sb3 import from_sb3
 from hp_gym.agents.training import checkpoint, environments
@@ -17,6 +17,9 @@ from hp_gym.agents.training.trips import Decide
 from hp_gym.agents.training.validation import Figures, Validation
 from hp_gym.files import atomic_write
 from hp_gym.terminal import progress_console
+
+with extras.needed("train"):
+    from stable_baselines3.common.callbacks import BaseCallback
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import hp_gym
 
-_PACKAGES: Final = ("gymnasium", "numpy", "pandas", "scipy")
+_PACKAGES: Final = ("gymnasium", "numpy", "pandas")
 
 
 def versions() -> dict[str, str]:

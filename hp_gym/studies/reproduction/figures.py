@@ -6,14 +6,16 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Final
 
-import matplotlib as mpl
-from matplotlib.figure import Figure
-from matplotlib.ticker import MultipleLocator
-
+from hp_gym import extras
 from hp_gym.files import atomic_write
 from hp_gym.pictures.plotting import STYLE
 from hp_gym.studies.reproduction.paper import PUBLISHED_SCENARIOS
 from hp_gym.studies.reproduction.runs import Runs
+
+with extras.needed("plot"):
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import MultipleLocator
 
 DESCRIPTIONS: Final = {scenario.label: scenario.description for scenario in PUBLISHED_SCENARIOS}
 
