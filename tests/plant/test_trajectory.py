@@ -14,8 +14,8 @@ from hp_gym.pictures.plotting import plot
 
 
 def read_csv(path: Path) -> pd.DataFrame:
-    # The default of pandas 2 rounds the last digit.
-    return pd.read_csv(path, float_precision="round_trip")
+    # Numbers as text first: pandas 2 itself rounds their last digit.
+    return pd.read_csv(path, dtype=str).astype(float)
 
 
 @pytest.fixture(scope="module")
