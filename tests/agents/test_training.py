@@ -23,6 +23,8 @@ from hp_gym.agents.training.checkpoint import CheckpointError
 from hp_gym.agents.training.run_folder import RunFolder, RunFolderError
 from hp_gym.cli.app import app
 
+pytestmark = pytest.mark.training
+
 SMALL = """
 algorithm = "ppo"
 total_decisions = 1536

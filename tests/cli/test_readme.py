@@ -1,9 +1,11 @@
-"""The snippets of the README and of the page on learning run as they stand."""
+"""The snippets of the README, of the index's page and of the page on learning run as they stand."""
 
 import re
 from pathlib import Path
 
 import pytest
+
+from hp_gym import extras
 
 ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
@@ -13,7 +15,9 @@ def snippets(page: Path) -> list[str]:
     return re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.DOTALL)
 
 
-SNIPPETS = snippets(README)
+INDEX_PAGE = ROOT / "docs" / "index-page.md"
+
+SNIPPETS = snippets(README) + snippets(INDEX_PAGE)
 # Of the page on learning, what needs neither training nor another package.
 SNIPPETS += [
     text
@@ -38,5 +42,27 @@ def test_every_command_of_the_readme_exists() -> None:
     names = {
         command.name or command.callback.__name__ for command in app.registered_commands if command.callback
     }
-    used = set(re.findall(r"uv run hp-gym (\w+)", README.read_text(encoding="utf-8")))
-    assert used <= names
+    used = set(re.findall(r"hp-gym ([a-z]+)[ \n`]", README.read_text(encoding="utf-8")))
+    assert {"benchmark", "reproduce", "run", "scenarios"} <= used <= names
+
+
+def test_every_extra_of_the_documents_exists() -> None:
+    named: set[str] = set()
+    for page in (
+        README,
+        ROOT / "CONTRIBUTING.md",
+        *(ROOT / "docs").glob("*.md"),
+        *(ROOT / "agents").rglob("*.md"),
+    ):
+        named |= set(re.findall(r"--extra ([a-z]+)", page.read_text(encoding="utf-8")))
+    assert "studies" in named
+    assert named <= set(extras.EXTRAS)
+    for page in (README, INDEX_PAGE):
+        table = re.findall(r"^\| `([a-z]+)`", page.read_text(encoding="utf-8"), flags=re.MULTILINE)
+        assert set(extras.EXTRAS) <= set(table)
+
+
+def test_the_page_of_the_index_needs_no_file_beside_it() -> None:
+    targets = re.findall(r"\]\(([^)]*)\)", INDEX_PAGE.read_text(encoding="utf-8"))
+    assert targets
+    assert all(target.startswith("https://") for target in targets)

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.rust
+
 ROOT = Path(__file__).resolve().parents[2]
 TAIL_LINES = 80
 
