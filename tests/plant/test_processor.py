@@ -1,6 +1,8 @@
 from __future__ import annotations
 
 import importlib.util
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -40,3 +42,20 @@ def test_the_extension_holds_the_mark_of_what_it_was_built_for() -> None:
     content = Path(spec.origin).read_bytes()
     assert _core.__built_for__.encode() in content
     assert (MARK in content) == (_core.__built_for__.encode() == MARK)
+
+
+@pytest.mark.skipif(
+    _core.__built_for__.encode() != MARK, reason="this build runs on every processor of its kind"
+)
+def test_the_command_says_in_one_line_that_the_processor_is_too_old() -> None:
+    code = (
+        "import sys, numpy\n"
+        "from numpy._core import _multiarray_umath\n"
+        "_multiarray_umath.__cpu_features__['AVX2'] = False\n"
+        "sys.argv[0] = '/somewhere/bin/hp-gym'\n"
+        "import hp_gym.cli.app"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert run.returncode == 1
+    assert len(run.stderr.splitlines()) == 1, run.stderr
+    assert run.stderr.startswith("hp-gym: hp_gym was built for x86-64-v3, but this processor lacks AVX2")
