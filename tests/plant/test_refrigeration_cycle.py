@@ -15,7 +15,10 @@ import check_refrigeration_cycle as check
 
 Rust = tuple[dict[str, Any], list[check.Point]]
 
-pytestmark = pytest.mark.skipif(shutil.which("cargo") is None, reason="needs cargo to run the Rust example")
+pytestmark = [
+    pytest.mark.rust,
+    pytest.mark.skipif(shutil.which("cargo") is None, reason="needs cargo to run the Rust example"),
+]
 
 
 @pytest.fixture(scope="module")
