@@ -7,6 +7,7 @@ import typer
 from hp_gym.cli.benchmark_command import benchmark
 from hp_gym.cli.calibrate_command import calibrate
 from hp_gym.cli.export_command import export
+from hp_gym.cli.interrupts import hook, stoppable
 from hp_gym.cli.reproduce_command import reproduce
 from hp_gym.cli.run_command import run
 from hp_gym.cli.scenarios_command import scenarios
@@ -20,18 +21,19 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (
-    benchmark,
-    run,
-    scenarios,
-    reproduce,
-    calibrate,
-    tune,
-    train,
-    export,
-    speed,
+_AS_BEFORE = "nothing was written, and earlier results are as they were"
+for command, kept in (
+    (benchmark, _AS_BEFORE),
+    (run, ""),
+    (scenarios, ""),
+    (reproduce, _AS_BEFORE),
+    (calibrate, _AS_BEFORE),
+    (tune, "trials so far are kept, and the same command goes on with them"),
+    (train, "no run was begun, and nothing was written"),
+    (export, _AS_BEFORE),
+    (speed, ""),
 ):
-    app.command()(command)
+    app.command()(stoppable(command, kept))
 
 
 def _print_version(wanted: bool) -> None:
@@ -56,4 +58,5 @@ def _root(
 
 def main() -> None:
     """Runs the command line."""
+    hook()
     app()

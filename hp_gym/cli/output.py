@@ -1,12 +1,11 @@
 """What every command shares: results on standard output, and how a command fails."""
 
-import json
-import math
-from collections.abc import Mapping, Sequence
 from typing import Final, NoReturn
 
 import typer
 from rich.console import Console
+
+from hp_gym.messages import in_one_line
 
 console: Final = Console(highlight=False)
 """For results that people read."""
@@ -16,7 +15,10 @@ USAGE_ERROR: Final = 2
 
 def print_json(data: object) -> None:
     """Prints data as JSON; a number that JSON does not have becomes null."""
-    typer.echo(json.dumps(_finite(data), indent=2, ensure_ascii=False, allow_nan=False))
+    # NumPy is slow to load: only commands that have loaded it anyway come here.
+    from hp_gym.json_text import dumps
+
+    typer.echo(dumps(data))
 
 
 def fail(reason: str | Exception) -> NoReturn:
@@ -28,15 +30,5 @@ def fail(reason: str | Exception) -> NoReturn:
     message = str(reason)
     if isinstance(reason, OSError) and reason.strerror and reason.filename:
         message = f"{reason.filename}: {reason.strerror}"
-    typer.echo(f"hp-gym: {' '.join(message.split())}", err=True)
+    typer.echo(f"hp-gym: {in_one_line(message)}", err=True)
     raise typer.Exit(USAGE_ERROR)
-
-
-def _finite(data: object) -> object:
-    if isinstance(data, float) and not math.isfinite(data):
-        return None
-    if isinstance(data, Mapping):
-        return {key: _finite(value) for key, value in data.items()}
-    if isinstance(data, Sequence) and not isinstance(data, str):
-        return [_finite(value) for value in data]
-    return data

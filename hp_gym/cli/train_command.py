@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
+from hp_gym.cli.interrupts import INTERRUPTED, stopped
 from hp_gym.cli.output import console, fail, print_json
-from hp_gym.terminal import progress_console
 
 
 def train(
@@ -60,9 +60,11 @@ def train(
     except (ValueError, OSError) as error:
         fail(error)
     except KeyboardInterrupt:
+        from hp_gym.agents.training.run_folder import RunFolder
+
         folder = resume or out or Path("runs") / f"{Path(config).stem}-{seed}"
-        progress_console.print(f"Stopped. Go on with: hp-gym train --resume {folder}", soft_wrap=True)
-        raise typer.Exit(130) from None
+        stopped(RunFolder(folder).how_to_go_on())
+        raise typer.Exit(INTERRUPTED) from None
     if json:
         print_json(
             asdict(outcome)

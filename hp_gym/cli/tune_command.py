@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hp_gym.cli.output import console, fail, print_json
-from hp_gym.terminal import progress_console
 
 if TYPE_CHECKING:
     from hp_gym.studies.tuning.ambient_bands import Band
@@ -22,38 +21,11 @@ def tune(
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
     """Chooses modes, and modes with set points, for each ambient band on training trips."""
-    from rich.progress import Progress
+    from hp_gym.studies.tuning import tuned_rules
 
-    from hp_gym.studies.tuning import rule_choices, search
-    from hp_gym.studies.tuning.ambient_bands import BANDS
-    from hp_gym.studies.tuning.objective import objective
-
-    best: list[tuple[Band, Result]] = []
-    tuned: list[tuple[Band, Result]] = []
     how = f"hp-gym tune --trials {trials} --trips {trips} --seed {seed}"
     try:
-        out.mkdir(parents=True, exist_ok=True)
-        with Progress(console=progress_console) as progress:
-            task = progress.add_task("", total=len(BANDS) * (trials + len(search.modes())))
-            for band in BANDS:
-                progress.update(task, description=band.title)
-                with objective(band, trips, seed) as goal:
-                    best.append((band, search.best_mode(goal, lambda: progress.advance(task))))
-                    start = best[-1][1].choices
-                    result = search.tuned(goal, start, trials, seed, lambda: progress.advance(task))
-                    tuned.append((band, result))
-        for name, what, results in (
-            (
-                "hpcu-best-mode",
-                "Best fixed modes of the HPCU in each ambient band, the paper's set points",
-                best,
-            ),
-            ("hpcu-tuned", "HPCU with modes, set points and thresholds tuned in each ambient band", tuned),
-        ):
-            description = f"{what}; chosen on training trips:\n{how}"
-            rule_choices.write(
-                out / f"{name}.toml", description, [(band, result.choices) for band, result in results]
-            )
+        best, tuned = tuned_rules.tune(out, trials, trips, seed, how)
     except (ValueError, OSError) as error:
         fail(error)
     if json:

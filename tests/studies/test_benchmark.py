@@ -11,6 +11,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import hp_gym
+from hp_gym import transactions
 from hp_gym.agents.controllers import resolve
 from hp_gym.cli.app import app
 from hp_gym.studies.benchmark import grid, matched, results_folder, summary
@@ -298,7 +299,7 @@ def test_new_contents_replace_folders_and_keep_what_has_no_successor(tmp_path: P
     (tmp_path / "scenarios").mkdir()
     (tmp_path / "scenarios" / "old.toml").touch()
     (tmp_path / "notes.txt").touch()
-    with results_folder.new_contents(tmp_path) as folder:
+    with transactions.new_contents(tmp_path) as folder:
         (folder / "scenarios").mkdir()
         (folder / "scenarios" / "new.toml").touch()
     found = {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*")}

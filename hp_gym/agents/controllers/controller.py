@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
+from hp_gym.messages import OneLineError
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
@@ -21,7 +23,7 @@ NO_SEED: Final = -1
 """Seed of a controller that has none."""
 
 
-class ControllerError(ValueError):
+class ControllerError(OneLineError):
     """There is no such controller, or it cannot be used."""
 
 

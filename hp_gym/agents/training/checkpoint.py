@@ -1,8 +1,10 @@
 """Checkpoints: everything that the rest of a training depends on, in one file that cannot run code."""
 
+import hashlib
 import json
 import os
 import random
+import warnings
 from collections import deque
 from collections.abc import Mapping
 from io import BytesIO
@@ -15,29 +17,32 @@ from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.buffers import ReplayBuffer
 
 from hp_gym.agents.training import environments
-from hp_gym.files import atomic_write
+from hp_gym.messages import OneLineError, UncheckedFileWarning
+from hp_gym.files import atomic_write, read_bytes
 
-FORMAT_VERSION: Final = 1
+FORMAT_VERSION: Final = 2
+"""Since 2 a checkpoint ends with its checksum."""
+
+_LARGEST_BYTES: Final = 8 * 2**30
+_SEAL: Final = b"\nhp_gym sha256 "
+_SEAL_LENGTH: Final = len(_SEAL) + 64
+_KEYS: Final = {"format_version", "notes", "model", "environments", "random"}
 
 _COUNTERS: Final = ("num_timesteps", "_n_updates", "_episode_num", "_current_progress_remaining", "ent_coef")
 _ARRAYS: Final = ("_last_obs", "_last_episode_starts", "_last_original_obs")
 _REPLAY: Final = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
 
 
-class CheckpointError(ValueError):
+class CheckpointError(OneLineError):
     """A checkpoint that is truncated, foreign, or of another version; the message says which and why."""
 
 
-def write(path: Path, model: BaseAlgorithm, notes: Mapping[str, Any]) -> None:
-    """Writes a checkpoint whole or not at all.
+def encode(model: BaseAlgorithm, notes: Mapping[str, Any]) -> bytes:
+    """Returns a checkpoint as the bytes of its file, which end with their checksum.
 
     Args:
-        path: The file.
         model: What is trained, between an update and the decisions that follow it.
         notes: What the training itself remembers; goes through JSON.
-
-    Raises:
-        OSError: It cannot be written; what was there before is intact.
     """
     content = {
         "format_version": FORMAT_VERSION,
@@ -49,29 +54,70 @@ def write(path: Path, model: BaseAlgorithm, notes: Mapping[str, Any]) -> None:
     # By way of memory: torch's own writer reports a full disk as an internal error.
     buffer = BytesIO()
     torch.save(content, buffer)
+    digest = hashlib.sha256(buffer.getbuffer()).hexdigest()
+    buffer.seek(0, os.SEEK_END)
+    buffer.write(_SEAL + digest.encode("ascii"))
+    return buffer.getvalue()
+
+
+def write(path: Path, data: bytes) -> None:
+    """Writes the bytes of a checkpoint whole or not at all.
+
+    Raises:
+        OSError: It cannot be written; what was there before is intact.
+    """
     with atomic_write(path) as temporary:
-        temporary.write_bytes(buffer.getbuffer())
+        temporary.write_bytes(data)
 
 
 def read(path: Path) -> dict[str, Any]:
     """Reads a checkpoint.
 
     Raises:
-        CheckpointError: It is truncated, foreign or of another version.
+        CheckpointError: It is damaged, foreign or of another version.
+        FileError: It is no regular file, or too large.
         OSError: It cannot be read.
     """
-    data = path.read_bytes()
+    data = read_bytes(path, _LARGEST_BYTES)
+    place = len(data) - _SEAL_LENGTH
+    sealed = place > 0 and data[place : place + len(_SEAL)] == _SEAL
+    if sealed and hashlib.sha256(data[:place]).hexdigest().encode("ascii") != data[place + len(_SEAL) :]:
+        message = f"{path}: no complete checkpoint (its checksum is another)"
+        raise CheckpointError(message)
     try:
-        content = torch.load(BytesIO(data), map_location="cpu", weights_only=True)
+        content: dict[str, Any] = torch.load(
+            BytesIO(data[:place] if sealed else data), map_location="cpu", weights_only=True
+        )
+        version = content["format_version"]
+        content["notes"] = json.loads(content["notes"])
+        known = content.keys() == _KEYS and isinstance(content["notes"], dict)
     # What torch raises on a damaged file differs from case to case.
     except Exception as error:
         message = f"{path}: no complete checkpoint ({type(error).__name__})"
         raise CheckpointError(message) from error
-    if not isinstance(content, dict) or content.get("format_version") != FORMAT_VERSION:
+    # Up to version 1 there was no checksum.
+    if not known or version != (FORMAT_VERSION if sealed else 1):
         message = f"{path}: no checkpoint of format version {FORMAT_VERSION}"
         raise CheckpointError(message)
-    content["notes"] = json.loads(content["notes"])
+    if not sealed:
+        _require_finite(path, content, path.name)
+        warnings.warn(
+            f"{path}: without checksum, only its values are checked", UncheckedFileWarning, stacklevel=2
+        )
     return content
+
+
+def _require_finite(path: Path, value: Any, place: str) -> None:
+    """Checks all numbers of a checkpoint that has no checksum."""
+    if isinstance(value, Mapping):
+        for key, inner in value.items():
+            _require_finite(path, inner, str(key))
+    elif isinstance(value, list | tuple):
+        for inner in value:
+            _require_finite(path, inner, place)
+    elif isinstance(value, torch.Tensor) and value.is_floating_point() and not torch.isfinite(value).all():
+        message = f"{path}: no complete checkpoint (`{place}` holds numbers that are not finite)"
+        raise CheckpointError(message)
 
 
 def restore(content: Mapping[str, Any], model: BaseAlgorithm, path: str | os.PathLike[str]) -> None:
@@ -84,7 +130,8 @@ def restore(content: Mapping[str, Any], model: BaseAlgorithm, path: str | os.Pat
         _restore_model(content["model"], model)
         environments.set_state(_envs(model), content["environments"])
         _restore_random(content["random"], model)
-    except (KeyError, ValueError, RuntimeError, TypeError, AttributeError) as error:
+    # Whatever a value of another kind leads to in torch, NumPy or stable-baselines3.
+    except Exception as error:
         message = f"{os.fspath(path)}: does not fit the run's configuration ({error})"
         raise CheckpointError(message) from error
 

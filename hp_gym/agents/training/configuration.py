@@ -18,6 +18,7 @@ from pydantic import (
 )
 
 from hp_gym import _core
+from hp_gym.messages import OneLineError
 from hp_gym.pydantic_errors import one_line
 
 _LONGEST_BASE_CHAIN: Final = 8
@@ -29,7 +30,7 @@ Pair: TypeAlias = Annotated[list[float], Field(min_length=2, max_length=2)]
 Share: TypeAlias = Annotated[float, Field(ge=0.0, le=1.0)]
 
 
-class TrainingConfigurationError(ValueError):
+class TrainingConfigurationError(OneLineError):
     """A training configuration that cannot be used; the message says where and why, in one line."""
 
 

@@ -5,6 +5,7 @@ import io
 import json
 import os
 import platform
+import re
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
@@ -16,13 +17,17 @@ from typing import Any, Final
 import hp_gym
 from hp_gym.agents.training import checkpoint, configuration
 from hp_gym.agents.training.configuration import Training
-from hp_gym.files import atomic_write
+from hp_gym.messages import FileError, OneLineError
+from hp_gym.files import OURS, atomic_write, read_bytes
+from hp_gym.json_text import dumps
 
 _PACKAGES: Final = ("gymnasium", "numpy", "sb3-contrib", "stable-baselines3", "torch")
 _KEPT_CHECKPOINTS: Final = 2
+_LARGEST_BYTES: Final = 16 * 2**20
+_HALF_WRITTEN: Final = re.compile(rf"\..+\.({OURS})?[0-9a-f]{{8}}\.(pt|json|toml|csv|safetensors|zip)")
 
 
-class RunFolderError(ValueError):
+class RunFolderError(OneLineError):
     """A run that cannot be started or continued; the message says which and why."""
 
 
@@ -56,12 +61,49 @@ class RunFolder:
             RunFolderError: There is a run already.
             OSError: The folder cannot be written to.
         """
-        if (self.path / "config.toml").exists() or (self.path / "run.json").exists():
-            message = f"{self.path}: holds a run already; go on with --resume, or choose another --out"
-            raise RunFolderError(message)
+        self.require_new()
         self._checkpoints.mkdir(parents=True, exist_ok=True)
+        self._remove_debris()
         self._write("run.json", _json({"name": name, "seed": seed, "starts": [_start()]}))
         self._write("config.toml", configuration.to_toml(training))
+
+    @property
+    def is_begun(self) -> bool:
+        """Whether there is a run; `config.toml` is written last when one begins."""
+        return (self.path / "config.toml").exists()
+
+    def require_new(self) -> None:
+        """Checks that no run has begun here.
+
+        Raises:
+            RunFolderError: There is a run already.
+        """
+        if self.is_begun:
+            message = f"{self.path}: holds a run already; go on with --resume, or choose another --out"
+            raise RunFolderError(message)
+
+    def require_begun(self) -> None:
+        """Checks that a run has begun here.
+
+        Raises:
+            RunFolderError: There is none.
+        """
+        if not self.is_begun:
+            message = f"{self.path}: holds no run that could go on"
+            raise RunFolderError(message)
+
+    def how_to_go_on(self) -> str:
+        """Returns what is kept of a run that was stopped, and the command that goes on with it."""
+        if not self.is_begun:
+            return "no run was begun, and nothing was written"
+        made = max((path.stem for path in self._checkpoints.glob("[0-9]*.pt")), default="")
+        where = (
+            f"its checkpoint is at {int(made):,} decisions"
+            if made.isdigit()
+            else "there is no checkpoint yet"
+        )
+        does = "go on" if made.isdigit() else "begin anew"
+        return f"{where}; {does} with: hp-gym train --resume {self.path}"
 
     def reopen(self) -> tuple[Training, str, int]:
         """Returns configuration, name and seed of a run that is to go on, and notes the new start.
@@ -71,29 +113,28 @@ class RunFolder:
             TrainingConfigurationError: The configuration is damaged.
             OSError: A file cannot be read or written.
         """
-        if not (self.path / "config.toml").exists():
-            message = f"{self.path}: holds no run that could go on"
-            raise RunFolderError(message)
+        self.require_begun()
         if self.status().get("state") == "finished":
             message = f"{self.path}: the run has finished"
             raise RunFolderError(message)
         training = configuration.read(self.path / "config.toml")
         try:
-            told = json.loads((self.path / "run.json").read_text(encoding="utf-8"))
+            told = json.loads(read_bytes(self.path / "run.json", _LARGEST_BYTES))
             name, seed = str(told["name"]), int(told["seed"])
             told["starts"].append(_start())
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
+        except (KeyError, TypeError, ValueError, AttributeError, OverflowError, RecursionError) as error:
             message = f"{self.path / 'run.json'}: damaged"
             raise RunFolderError(message) from error
         self._checkpoints.mkdir(exist_ok=True)
+        self._remove_debris()
         self._write("run.json", _json(told))
         return training, name, seed
 
     def status(self) -> dict[str, Any]:
         """Returns the latest status; empty if there is none."""
         try:
-            told = json.loads((self.path / "status.json").read_text(encoding="utf-8"))
-        except (OSError, ValueError):
+            told = json.loads(read_bytes(self.path / "status.json", _LARGEST_BYTES))
+        except (OSError, ValueError, RecursionError):
             return {}
         return told if isinstance(told, dict) else {}
 
@@ -120,22 +161,27 @@ class RunFolder:
         Raises:
             CheckpointError: There are checkpoints, but none is whole.
         """
-        damaged: checkpoint.CheckpointError | None = None
+        damaged: OneLineError | None = None
         for path in sorted(self._checkpoints.glob("[0-9]*.pt"), reverse=True):
             try:
                 return path, checkpoint.read(path)
-            except checkpoint.CheckpointError as error:
+            except (checkpoint.CheckpointError, FileError) as error:
                 damaged = damaged or error
         if damaged is not None:
             raise damaged
         return None
 
     def forget_old_checkpoints(self) -> None:
-        """Removes all but the latest checkpoints, and what killed processes have left half-written."""
+        """Removes all but the latest checkpoints."""
         for path in sorted(self._checkpoints.glob("[0-9]*.pt"))[:-_KEPT_CHECKPOINTS]:
-            path.unlink()
-        for path in self._checkpoints.glob(".*.pt"):
-            path.unlink()
+            path.unlink(missing_ok=True)
+
+    def _remove_debris(self) -> None:
+        """Removes what killed processes have left half-written; the run is locked, so nobody else writes."""
+        for folder in (self.path, self._checkpoints):
+            for path in folder.iterdir():
+                if _HALF_WRITTEN.fullmatch(path.name):
+                    path.unlink()
 
     def _write(self, name: str, text: str) -> None:
         with atomic_write(self.path / name) as temporary:
@@ -143,7 +189,7 @@ class RunFolder:
 
 
 def _json(told: Mapping[str, Any]) -> str:
-    return json.dumps(told, indent=2) + "\n"
+    return dumps(told) + "\n"
 
 
 def _start() -> dict[str, Any]:

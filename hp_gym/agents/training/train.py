@@ -1,5 +1,6 @@
 """Training from start or checkpoint to the end."""
 
+import signal
 import threading
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
@@ -20,6 +21,7 @@ from hp_gym.agents.training.configuration import MaskablePPOTraining, PPOTrainin
 from hp_gym.agents.training.run_folder import RunFolder
 from hp_gym.agents.training.validation import Figures, Validation
 from hp_gym.agents.training.watch import Run, Watch
+from hp_gym.locks import lock
 from hp_gym.terminal import progress_console
 
 
@@ -57,15 +59,18 @@ def start(training: Training, name: str, seed: int, out: Path) -> Outcome:
 
     Raises:
         RunFolderError: The folder holds a run.
+        InUseError: Another process writes to the folder.
         ConfigurationError: An argument of the environment is not accepted.
         OSError: A file cannot be written; all that was written before is intact.
     """
-    # Before the folder is made, so that a wrong configuration leaves nothing behind.
-    model = _model(training, seed)
-    notes = _first_notes(training)
     folder = RunFolder(out)
-    folder.create(training, name, seed)
-    return _learn(Run(training, name, seed, folder), model, notes)
+    with lock(out):
+        folder.require_new()
+        # Before the folder is made, so that a wrong configuration leaves nothing behind.
+        model = _model(training, seed)
+        notes = _first_notes(training)
+        folder.create(training, name, seed)
+        return _learn(Run(training, name, seed, folder), model, notes)
 
 
 def resume(out: Path) -> Outcome:
@@ -73,10 +78,17 @@ def resume(out: Path) -> Outcome:
 
     Raises:
         RunFolderError: There is no run, or it has finished.
+        InUseError: Another process writes to the folder.
         CheckpointError: There are checkpoints, but none is whole or fits.
         OSError: A file cannot be read or written.
     """
     folder = RunFolder(out)
+    folder.require_begun()
+    with lock(out):
+        return _resume(folder)
+
+
+def _resume(folder: RunFolder) -> Outcome:
     training, name, seed = folder.reopen()
     model = _model(training, seed)
     found = folder.latest_checkpoint()
@@ -115,7 +127,12 @@ def _learn(run: Run, model: BaseAlgorithm, notes: dict[str, Any]) -> Outcome:
     with (
         _quiet_threads(),
         _logger(folder.tensorboard, model.num_timesteps) as logger,
-        Progress(*columns, console=progress_console, speed_estimate_period=120) as progress,
+        Progress(
+            *columns,
+            console=progress_console,
+            speed_estimate_period=120,
+            disable=not progress_console.is_terminal,
+        ) as progress,
     ):
         model.set_logger(logger)
         task = progress.add_task(
@@ -130,16 +147,19 @@ def _learn(run: Run, model: BaseAlgorithm, notes: dict[str, Any]) -> Outcome:
         remaining = training.total_decisions - model.num_timesteps
         try:
             # In stable-baselines3 the total grows by the decisions already made.
-            model.learn(
-                remaining,
-                callback=watch,
-                reset_num_timesteps=model.num_timesteps == 0,
-                log_interval=_LOG[training.algorithm],
-            )
+            with _stops(watch):
+                model.learn(
+                    remaining,
+                    callback=watch,
+                    reset_num_timesteps=model.num_timesteps == 0,
+                    log_interval=_LOG[training.algorithm],
+                )
             watch.finish()
         except (KeyboardInterrupt, OSError) as error:
             # On a full disk this may fail as well; the first error is the one to tell.
             with suppress(OSError):
+                if isinstance(error, KeyboardInterrupt):
+                    watch.keep_work()
                 watch.interrupted(str(error) or "stopped by the user")
             raise
         finally:
@@ -189,6 +209,19 @@ class _TensorBoard(TensorBoardOutputFormat):
     def __init__(self, writer: SummaryWriter) -> None:
         self.writer = writer
         self._is_closed = False
+
+
+@contextmanager
+def _stops(watch: Watch) -> Generator[None]:
+    """Lets Ctrl-C stop the training where it can go on from."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, lambda *_: watch.stop())
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @contextmanager

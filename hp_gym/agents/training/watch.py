@@ -75,6 +75,9 @@ class Watch(BaseCallback):
         self._began_s = perf_counter()
         self._decisions_at_start = 0
         self._latest_checkpoint: int | None = None
+        self._kept: tuple[int, bytes] | None = None
+        self._is_between = False
+        self._is_asked_to_stop = False
         constraint = run.training.comfort_constraint
         self._comfort = None
         if constraint is not None:
@@ -92,11 +95,36 @@ class Watch(BaseCallback):
 
     def _on_training_start(self) -> None:
         self._decisions_at_start = self.model.num_timesteps
+        self._latest_checkpoint = self.model.num_timesteps or None
         self._began_s = perf_counter()
         self._write_status("running")
         self._show()
 
+    def stop(self) -> None:
+        """Ends the training where it can go on from: now, or for off-policy algorithms in a moment.
+
+        Raises:
+            KeyboardInterrupt: That is now, or it was asked for before.
+        """
+        if self._keeps_rollouts() or self._is_between or self._is_asked_to_stop:
+            raise KeyboardInterrupt
+        self._is_asked_to_stop = True
+
     def _on_rollout_start(self) -> None:
+        self._is_between = True
+        if self._is_asked_to_stop:
+            raise KeyboardInterrupt
+        self._look_after()
+        # Before it decides on: what a stop in the middle of a rollout goes back to. Buffers of off-policy
+        # algorithms are too large for that, but their rollouts take a moment only.
+        if self._keeps_rollouts() and (self._kept is None or self._kept[0] != self.model.num_timesteps):
+            self._keep()
+        self._is_between = False
+
+    def _keeps_rollouts(self) -> bool:
+        return getattr(self.model, "replay_buffer", None) is None
+
+    def _look_after(self) -> None:
         decisions = self.model.num_timesteps
         self._anneal_entropy()
         if self._comfort is not None and self._comfort.is_due(decisions):
@@ -125,6 +153,18 @@ class Watch(BaseCallback):
     def interrupted(self, reason: str) -> None:
         """Notes why the training ended early."""
         self._write_status("interrupted", reason=reason)
+
+    def keep_work(self) -> None:
+        """Writes a checkpoint of where the rollout under way began, if there is none yet.
+
+        Raises:
+            OSError: It cannot be written.
+        """
+        kept = self._kept
+        if self._is_between and not self._keeps_rollouts():
+            kept = self._keep()
+        if kept is not None and kept[0] != self._latest_checkpoint:
+            self._write_kept(*kept)
 
     def wall_s(self) -> float:
         """Returns the time that the training took, in all processes."""
@@ -199,7 +239,12 @@ class Watch(BaseCallback):
 
     def _write_checkpoint(self) -> None:
         began_s = perf_counter()
-        decisions = self.model.num_timesteps
+        self._write_kept(*self._keep())
+        self._checkpoint_s += perf_counter() - began_s
+        self._write_status("running")
+
+    def _keep(self) -> tuple[int, bytes]:
+        """Remembers where the training is, all of it."""
         notes = {
             "history": self._history,
             "rules": asdict(self._rules),
@@ -210,11 +255,16 @@ class Watch(BaseCallback):
             "validation_s": self._validation_s,
             "checkpoint_s": self._checkpoint_s,
         }
-        checkpoint.write(self._folder.checkpoint_path(decisions), self.model, notes)
+        self._kept = None
+        kept = self.model.num_timesteps, checkpoint.encode(self.model, notes)
+        if self._keeps_rollouts():
+            self._kept = kept
+        return kept
+
+    def _write_kept(self, decisions: int, data: bytes) -> None:
+        checkpoint.write(self._folder.checkpoint_path(decisions), data)
         self._folder.forget_old_checkpoints()
         self._latest_checkpoint = decisions
-        self._checkpoint_s += perf_counter() - began_s
-        self._write_status("running")
 
     def _write_status(self, state: str, **more: Any) -> None:
         speed = self.speed_decisions_s()

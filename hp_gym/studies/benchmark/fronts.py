@@ -71,7 +71,7 @@ def settings(front: Front, folder: Path) -> list[Setting]:
         path = folder / f"{name}.toml"
         # Tables of ambient bands replace those of the base as a whole, so only what moved need be written.
         changed = {key: value for key, value in moved.items() if value != values[key]}
-        with atomic_write(path) as temporary:
+        with atomic_write(path, durable=False) as temporary:
             temporary.write_text(tomlkit.dumps({"base": front.family, **changed}), encoding="utf-8")
         made.append(Setting(front.family, offsets_k, rules(name, path)))
     return made

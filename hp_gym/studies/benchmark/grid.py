@@ -12,6 +12,7 @@ import tomlkit
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from hp_gym import _core
+from hp_gym.messages import OneLineError
 from hp_gym.files import atomic_write
 from hp_gym.pydantic_errors import one_line
 
@@ -21,7 +22,7 @@ _CHECKED: Final = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 _Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9 ._-]+$")]
 
 
-class GridError(ValueError):
+class GridError(OneLineError):
     """A grid's file or a value in it is not right."""
 
 
@@ -149,7 +150,7 @@ class Grid:
         folder.mkdir(parents=True, exist_ok=True)
         paths = {scenario.name: folder / f"{scenario.name}.toml" for scenario in self.scenarios}
         for scenario in self.scenarios:
-            with atomic_write(paths[scenario.name]) as temporary:
+            with atomic_write(paths[scenario.name], durable=False) as temporary:
                 temporary.write_text(scenario.to_toml(), encoding="utf-8")
         return paths
 

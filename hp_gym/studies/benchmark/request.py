@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 import hp_gym
+from hp_gym import transactions
 from hp_gym.agents.controllers import DEFAULTS, Controller, learned, resolve
 from hp_gym.agents.controllers.rule_based import FILES
 from hp_gym.studies.benchmark import benchmark_plan, drive, grid, results_folder
@@ -77,7 +78,7 @@ def carry_out(request: Request, console: Console) -> Done:
     began_s = perf_counter()
     found = grid.load(request.grid)
     plan = benchmark_plan.Plan(found, controllers(request, console), request.words(), request.seed)
-    with results_folder.new_contents(request.out) as folder:
+    with transactions.new_contents(request.out) as folder:
         with _bar(console) as bar:
             task = bar.add_task("trips", total=None)
 

@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from hp_gym import _core
+from hp_gym.messages import OneLineError
 
 LOGARITHMIC_RATIO: Final = 10.0
 """A range that spans more than this is searched on a logarithmic scale."""
 
 
-class CalibrationError(ValueError):
+class CalibrationError(OneLineError):
     """A calibration file or a value that it needs is not right."""
 
 

@@ -13,6 +13,7 @@ from hp_gym.envs.hpcu_policy import HpcuPolicy
 from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
 from hp_gym.studies.tuning import rule_choices
 from hp_gym.studies.tuning.ambient_bands import Band, training_distribution
+from hp_gym.studies.tuning.kept_trials import KeptTrials, Outcome
 
 REWARD: Final = "reference"
 """What the reference policies are trained for, too (configs/rewards/reference.toml)."""
@@ -33,22 +34,39 @@ class Objective:
         distribution: File of its trips.
         trips: Number of trips.
         seed: Seed of the first one.
+        kept: Trials that were driven before, if any.
     """
 
-    def __init__(self, band: Band, distribution: Path, trips: int, seed: int) -> None:
+    def __init__(
+        self, band: Band, distribution: Path, trips: int, seed: int, kept: KeptTrials | None = None
+    ) -> None:
         self.band = band
         self._distribution = distribution
         self._trips = trips
         self._seed = seed
-        _, papers_k = self._drive(rule_choices.PAPER)
+        self._kept = kept
+        papers = self._drive(rule_choices.PAPER)
+        papers_k = papers[1]
+        if kept is not None and kept.get(band.title, rule_choices.PAPER) not in {None, papers}:
+            # The plant is another one since: nothing that was driven before counts.
+            kept.forget()
+        self._note(rule_choices.PAPER, papers)
         self._allowed_k = papers_k - min(MARGIN_K, MARGIN_SHARE * papers_k)
 
     def score(self, choices: rule_choices.Choices) -> float:
         """Returns points a trip; more is better. Discomfort beyond what is allowed costs `PENALTY_PER_K`."""
-        score, discomfort_k = self._drive(choices)
+        outcome = None if self._kept is None else self._kept.get(self.band.title, choices)
+        if outcome is None:
+            outcome = self._drive(choices)
+            self._note(choices, outcome)
+        score, discomfort_k = outcome
         return score - PENALTY_PER_K * max(discomfort_k - self._allowed_k, 0.0)
 
-    def _drive(self, choices: rule_choices.Choices) -> tuple[float, float]:
+    def _note(self, choices: rule_choices.Choices, outcome: Outcome) -> None:
+        if self._kept is not None and self._kept.get(self.band.title, choices) is None:
+            self._kept.add(self.band.title, choices, outcome)
+
+    def _drive(self, choices: rule_choices.Choices) -> Outcome:
         """Mean score of a trip, and mean discomfort over time [K]."""
         with TemporaryDirectory() as folder:
             file = Path(folder) / "controller.toml"
@@ -68,7 +86,7 @@ class Objective:
 
 
 @contextmanager
-def objective(band: Band, trips: int, seed: int) -> Iterator[Objective]:
-    """Gives the objective of a band."""
+def objective(band: Band, trips: int, seed: int, kept: KeptTrials | None = None) -> Iterator[Objective]:
+    """Gives the objective of a band; see `Objective`."""
     with training_distribution(band) as distribution:
-        yield Objective(band, distribution, trips, seed)
+        yield Objective(band, distribution, trips, seed, kept)

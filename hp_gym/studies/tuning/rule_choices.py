@@ -47,12 +47,12 @@ def to_toml(description: str, bands: Sequence[tuple[Band, Choices]]) -> str:
 
 
 def write(path: Path, description: str, bands: Sequence[tuple[Band, Choices]]) -> None:
-    """Writes a controller file whole or not at all.
+    """Writes a controller file whole or not at all, but not past a power cut.
 
     Raises:
         OSError: The folder cannot be written to.
     """
-    with atomic_write(path) as temporary:
+    with atomic_write(path, durable=False) as temporary:
         temporary.write_text(to_toml(description, bands), encoding="utf-8")
 
 

@@ -11,10 +11,10 @@ from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
 from hp_gym.files import atomic_write
+from hp_gym.json_text import plain
 from hp_gym.studies.benchmark.report import band_charts, headline, kpi_rows, layout, traces
 from hp_gym.studies.benchmark.report.palette import styles
 from hp_gym.studies.benchmark.report.pareto import HIDDEN, pareto
-from hp_gym.studies.benchmark.results_folder import plain
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

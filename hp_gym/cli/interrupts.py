@@ -1,0 +1,60 @@
+"""What Ctrl-C does, and memory that does not suffice: one line on standard error."""
+
+import functools
+import os
+import sys
+from collections.abc import Callable
+from types import TracebackType
+from typing import Final, ParamSpec, TypeVar
+
+import typer
+
+from hp_gym.cli.output import fail
+
+INTERRUPTED: Final = 130
+"""Exit code of a command that Ctrl-C has ended."""
+
+_Parameters = ParamSpec("_Parameters")
+_Result = TypeVar("_Result")
+
+
+def stopped(kept: str = "") -> None:
+    """Tells that a command was stopped, and what of its work is kept."""
+    typer.echo(f"hp-gym: stopped{'; ' if kept else ''}{kept}", err=True)
+
+
+def stoppable(command: Callable[_Parameters, _Result], kept: str = "") -> Callable[_Parameters, _Result]:
+    """Lets a command end with one line where the user stops it or memory does not suffice.
+
+    Args:
+        command: The command.
+        kept: What is kept of its work.
+    """
+
+    @functools.wraps(command)
+    def run(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
+        try:
+            return command(*args, **kwargs)
+        except KeyboardInterrupt:
+            stopped(kept)
+            raise typer.Exit(INTERRUPTED) from None
+        except MemoryError:
+            fail("memory does not suffice for what was asked for")
+
+    return run
+
+
+def hook() -> None:
+    """Lets Ctrl-C outside of commands, while libraries are loaded, end the process with one line too."""
+    before = sys.excepthook
+
+    def tell(kind: type[BaseException], error: BaseException, traceback: TracebackType | None) -> None:
+        if not issubclass(kind, KeyboardInterrupt):
+            before(kind, error, traceback)
+            return
+        sys.stdout.flush()
+        os.write(2, b"hp-gym: stopped\n")
+        # Python itself would end by the signal, without an exit code.
+        os._exit(INTERRUPTED)
+
+    sys.excepthook = tell
