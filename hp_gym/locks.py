@@ -9,8 +9,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
-from hp_gym.messages import InUseError
 from hp_gym.files import OURS
+from hp_gym.messages import InUseError
 
 if sys.platform == "win32":
     import msvcrt

@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from hp_gym import locks
-from hp_gym.messages import FileError
 from hp_gym.files import OURS, sync, sync_folder
+from hp_gym.messages import FileError
 
 _NOT_THERE: Final = {errno.ENOSYS, errno.EINVAL, errno.ENOTSUP, errno.EOPNOTSUPP}
 """What systems and file systems answer that cannot swap two names."""

@@ -48,11 +48,11 @@ def calibrate(
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
     """Fits parameters within bounds to the paper's totals: many parameters, few numbers."""
-    from hp_gym.files import atomic_write
     from hp_gym.studies.calibration import calibrated_files, calibration_report, held_out
     from hp_gym.studies.calibration.fit import Options, fit
     from hp_gym.studies.calibration.problem import load
     from hp_gym.studies.calibration.progress import bar
+    from hp_gym.transactions import new_contents
 
     try:
         if write:
@@ -81,9 +81,8 @@ def calibrate(
             with bar("subset", limit) as progress:
                 rest = held_out.subset(problem, values, options, progress)
         wall_s = perf_counter() - began_s
-        out.mkdir(parents=True, exist_ok=True)
-        with atomic_write(out / "calibrated.toml") as temporary:
-            temporary.write_text(calibration_report.to_toml(result), encoding="utf-8")
+        with new_contents(out) as folder:
+            (folder / "calibrated.toml").write_text(calibration_report.to_toml(result), encoding="utf-8")
         written = calibrated_files.write_back(problem, result.by_key()) if write else []
     except (ValueError, OSError) as error:
         fail(str(error))

@@ -28,7 +28,7 @@ def reproduce(
         fail(str(error))
     try:
         paths = figures.write_all(reproduction_report.labelled(reproduction), out)
-    except OSError as error:
+    except (ValueError, OSError) as error:
         fail(f"cannot write the figures: {error}")
     if json:
         print_json(reproduction.to_json() | {"figures": [str(path) for path in paths]})

@@ -7,9 +7,10 @@ import pytest
 from hp_gym import _core
 from hp_gym.studies.calibration import calibrated_files, calibration_report
 from hp_gym.studies.calibration.calibrated_files import current_values
+from hp_gym.studies.calibration.calibration_file import Parameter
 from hp_gym.studies.calibration.fit import Options, fit
 from hp_gym.studies.calibration.held_out import leave_out, subset
-from hp_gym.studies.calibration.problem import CalibrationError, Parameter, Problem, Target, load, parse
+from hp_gym.studies.calibration.problem import CalibrationError, Problem, Target, load, parse
 from hp_gym.studies.calibration.residuals import Residuals, overrides
 
 SCENARIOS = ("jeffs2019/case1-3", "jeffs2019/case1-4")

@@ -17,8 +17,8 @@ from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.buffers import ReplayBuffer
 
 from hp_gym.agents.training import environments
-from hp_gym.messages import OneLineError, UncheckedFileWarning
 from hp_gym.files import atomic_write, read_bytes
+from hp_gym.messages import OneLineError, UncheckedFileWarning
 
 FORMAT_VERSION: Final = 2
 """Since 2 a checkpoint ends with its checksum."""

@@ -1,7 +1,6 @@
 """Training configurations: what is learned, on which trips, how, and how it is watched."""
 
 import math
-import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal, Self, TypeAlias
@@ -17,11 +16,9 @@ from pydantic import (
     model_validator,
 )
 
-from hp_gym import _core
-from hp_gym.messages import OneLineError
+from hp_gym import toml_files
+from hp_gym.messages import FileError, OneLineError
 from hp_gym.pydantic_errors import one_line
-
-_LONGEST_BASE_CHAIN: Final = 8
 
 Count: TypeAlias = Annotated[int, Field(ge=1)]
 Positive: TypeAlias = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
@@ -313,10 +310,10 @@ def load(name: str, changes: Sequence[str] = ()) -> Training:
         changes: Single values as `key=value`, dotted key, value in TOML.
 
     Raises:
-        TrainingConfigurationError: Something in it is wrong.
+        TrainingConfigurationError: Something in it, or in a file that it names as its base, is wrong.
         ConfigurationError: There is no such file.
     """
-    tables = _merged(name, 0)
+    tables = _merged(name)
     for change in changes:
         _set(name, tables, change)
     return parse(tables, name)
@@ -348,28 +345,21 @@ def read(path: Path) -> Training:
         OSError: It cannot be read.
     """
     try:
-        return parse(tomllib.loads(path.read_text(encoding="utf-8")), str(path))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        message = f"{path}: {error}"
-        raise TrainingConfigurationError(message) from error
+        tables = toml_files.read(path)
+    except FileError as error:
+        raise TrainingConfigurationError(str(error)) from error
+    return parse(tables, str(path))
 
 
-def _merged(name: str, depth: int) -> dict[str, Any]:
-    if depth > _LONGEST_BASE_CHAIN:
-        message = f"{name}: the chain of `base` files is too long or closed"
-        raise TrainingConfigurationError(message)
+def _merged(name: str) -> dict[str, Any]:
+    whole: dict[str, Any] = {}
     try:
-        tables = tomllib.loads(_core.config_text("training configuration", name))
-    except tomllib.TOMLDecodeError as error:
-        message = f"{name}: {error}"
-        raise TrainingConfigurationError(message) from error
-    base = tables.pop("base", None)
-    if base is None:
-        return tables
-    if not isinstance(base, str):
-        message = f"{name}: `base` is {base!r}, but must be the name of a training configuration"
-        raise TrainingConfigurationError(message)
-    return _merge(_merged(base, depth + 1), tables)
+        files = list(toml_files.chain("training configuration", name))
+    except FileError as error:
+        raise TrainingConfigurationError(str(error)) from error
+    for _, tables in reversed(files):
+        whole = _merge(whole, tables)
+    return whole
 
 
 def _merge(whole: dict[str, Any], part: dict[str, Any]) -> dict[str, Any]:
@@ -385,10 +375,13 @@ def _set(name: str, tables: dict[str, Any], change: str) -> None:
         message = f"`{change}` must have the form key=value"
         raise TrainingConfigurationError(message)
     try:
-        value = tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+        value = toml_files.loads(f"value = {text}", key)["value"]
+    except FileError:
         value = text.strip()
     *sections, last = key.strip().split(".")
+    if len(sections) >= toml_files.DEEPEST:
+        message = f"{name}: `{key.strip()}` has more than {toml_files.DEEPEST} parts"
+        raise TrainingConfigurationError(message)
     place: Any = tables
     for section in sections:
         place = place.setdefault(section, {})

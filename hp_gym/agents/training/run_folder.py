@@ -17,9 +17,9 @@ from typing import Any, Final
 import hp_gym
 from hp_gym.agents.training import checkpoint, configuration
 from hp_gym.agents.training.configuration import Training
-from hp_gym.messages import FileError, OneLineError
 from hp_gym.files import OURS, atomic_write, read_bytes
 from hp_gym.json_text import dumps
+from hp_gym.messages import FileError, OneLineError
 
 _PACKAGES: Final = ("gymnasium", "numpy", "sb3-contrib", "stable-baselines3", "torch")
 _KEPT_CHECKPOINTS: Final = 2

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import itertools
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import tomlkit
 
-from hp_gym import _core
+from hp_gym import toml_files
 from hp_gym.agents.controllers.rule_based import rules
 from hp_gym.files import atomic_write
 
@@ -79,9 +78,10 @@ def settings(front: Front, folder: Path) -> list[Setting]:
 
 def _values(name: str) -> dict[str, Any]:
     """All values of a controller file, those of its bases included."""
-    tables = tomllib.loads(_core.config_text("controller", name))
-    base = tables.pop("base", None)
-    return tables if base is None else _merged(_values(base), tables)
+    values: dict[str, Any] = {}
+    for _, tables in reversed(list(toml_files.chain("controller", name))):
+        values = _merged(values, tables)
+    return values
 
 
 def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,7 +1,6 @@
 """The held-out trips: a file in configs/benchmark becomes explicit scenarios."""
 
 import itertools
-import tomllib
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,9 +10,9 @@ from typing import Annotated, Any, Final
 import tomlkit
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from hp_gym import _core
-from hp_gym.messages import OneLineError
+from hp_gym import _core, toml_files
 from hp_gym.files import atomic_write
+from hp_gym.messages import FileError, OneLineError
 from hp_gym.pydantic_errors import one_line
 
 DEFAULT_GRID: Final = "heldout-v0"
@@ -166,8 +165,10 @@ def load(name: str = DEFAULT_GRID) -> Grid:
         ConfigurationError: There is no such file.
     """
     try:
-        return parse(name, tomllib.loads(_core.config_text("benchmark", name)))
-    except (tomllib.TOMLDecodeError, GridError) as error:
+        return parse(name, toml_files.load("benchmark", name))
+    except FileError as error:
+        raise GridError(str(error)) from error
+    except GridError as error:
         raise GridError(f"benchmark `{name}`: {error}") from error
 
 

@@ -1,7 +1,6 @@
 """The configuration files that a calibration starts from and returns to."""
 
 import re
-import tomllib
 from collections.abc import Mapping, MutableMapping
 from pathlib import Path
 from typing import Any, Final
@@ -10,7 +9,7 @@ import tomlkit
 from tomlkit.items import Item
 
 import hp_gym
-from hp_gym import _core
+from hp_gym import _core, toml_files
 from hp_gym.files import atomic_write
 from hp_gym.studies.calibration.problem import CalibrationError, Problem
 
@@ -92,12 +91,9 @@ def _address(problem: Problem, key: str, scenario: str) -> tuple[str, str, list[
 
 def _owner(kind: str, name: str, path: list[str]) -> tuple[str, Mapping[str, Any]]:
     """File that holds a value, the file itself or one of its bases."""
-    file: str | None = name
-    while file is not None:
-        table = tomllib.loads(_core.config_text(kind, file))
+    for file, table in toml_files.chain(kind, name):
         if _find(table, path) is not None:
             return file, table
-        file = table.get("base")
     raise CalibrationError(f"{name}: there is no `{'.'.join(path)}` in this {kind}")
 
 

@@ -1,67 +1,19 @@
 """What a calibration fits to what: parameters with ranges, targets, soft claims."""
 
-import math
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import Any
 
-from hp_gym import _core
-from hp_gym.messages import OneLineError
+from pydantic import ValidationError
 
-LOGARITHMIC_RATIO: Final = 10.0
-"""A range that spans more than this is searched on a logarithmic scale."""
+from hp_gym import toml_files
+from hp_gym.messages import FileError, OneLineError
+from hp_gym.pydantic_errors import one_line
+from hp_gym.studies.calibration.calibration_file import CalibrationFile, Parameter
 
 
 class CalibrationError(OneLineError):
     """A calibration file or a value that it needs is not right."""
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A free value.
-
-    Attributes:
-        keys: Dotted keys that share the value, each `vehicle.`, `controller.` or `scenario.` and its path.
-        low: Lower bound.
-        high: Upper bound.
-        prior: Value expected before the fit.
-        source: Where range and prior come from.
-        prior_weight: How much more than others it is held at its prior.
-    """
-
-    keys: tuple[str, ...]
-    low: float
-    high: float
-    prior: float
-    source: str
-    prior_weight: float = 1.0
-
-    @property
-    def name(self) -> str:
-        """First key."""
-        return self.keys[0]
-
-    @property
-    def logarithmic(self) -> bool:
-        """Whether the search runs on a logarithmic scale."""
-        return self.low > 0.0 and self.high / self.low > LOGARITHMIC_RATIO
-
-    def to_share(self, value: float) -> float:
-        """Position of a value in the range, 0 to 1."""
-        if self.logarithmic:
-            return math.log(value / self.low) / math.log(self.high / self.low)
-        return (value - self.low) / (self.high - self.low)
-
-    def at_bound(self, value: float, share: float) -> bool:
-        """Whether a value is within a share of the plain range of a bound, whatever the search's scale."""
-        return min(value - self.low, self.high - value) <= share * (self.high - self.low)
-
-    def from_share(self, share: float) -> float:
-        """Value at a position in the range."""
-        if self.logarithmic:
-            return self.low * math.exp(share * math.log(self.high / self.low))
-        return self.low + share * (self.high - self.low)
 
 
 @dataclass(frozen=True)
@@ -149,8 +101,10 @@ def load(name: str) -> Problem:
         ConfigurationError: There is no such file.
     """
     try:
-        return parse(tomllib.loads(_core.config_text("calibration", name)))
-    except (tomllib.TOMLDecodeError, CalibrationError) as error:
+        return parse(toml_files.load("calibration", name))
+    except FileError as error:
+        raise CalibrationError(str(error)) from error
+    except CalibrationError as error:
         raise CalibrationError(f"{name}: {error}") from error
 
 
@@ -158,64 +112,23 @@ def parse(tables: Mapping[str, Any]) -> Problem:
     """Makes a calibration of the tables of its file.
 
     Raises:
-        CalibrationError: A key is missing, unknown or out of order.
+        CalibrationError: A key is missing or unknown, or a value is of the wrong kind or out of range.
     """
-    _allow("the file", tables, {"calibration", "parameter", "target", "soft_claim"})
-    head = tables.get("calibration", {})
-    fields = {"description", "vehicle", "controller", "energy_sigma_share", "final_soc_sigma_pct"}
-    fields |= {"prior_sigma_share", "maximum_evaluations", "seed", "soft_claim_margin"}
-    fields |= {"subset_energy", "subset_final_soc"}
-    _allow("[calibration]", head, fields)
-    targets = tuple(_target(table) for table in tables.get("target", ()))
-    if not targets:
-        raise CalibrationError("there is no [[target]]")
-    parameters = tuple(_parameter(table) for table in tables.get("parameter", ()))
-    if not parameters:
-        raise CalibrationError("there is no [[parameter]]")
+    try:
+        file = CalibrationFile.model_validate(tables)
+    except ValidationError as error:
+        raise CalibrationError(one_line(error)) from error
+    parameters = tuple(table.parameter() for table in file.parameter)
+    targets = tuple(Target(**table.model_dump()) for table in file.target)
     _once("key", (key for parameter in parameters for key in parameter.keys))
     _once("target", (target.scenario for target in targets))
-    try:
-        soft_claims = {int(table["id"]): float(table["weight"]) for table in tables.get("soft_claim", ())}
-        values: dict[str, Any] = {
-            key: tuple(value) if isinstance(value, list) else value for key, value in head.items()
-        }
-        return Problem(parameters=parameters, targets=targets, soft_claims=soft_claims, **values)
-    except (KeyError, TypeError) as error:
-        raise CalibrationError(f"something is missing: {error}") from error
-
-
-def _parameter(table: Mapping[str, Any]) -> Parameter:
-    where = f"[[parameter]] {table.get('key', table.get('keys', '?'))}"
-    _allow(where, table, {"key", "keys", "low", "high", "prior", "prior_weight", "source"})
-    if ("key" in table) == ("keys" in table):
-        raise CalibrationError(f"{where}: needs either `key` or `keys`")
-    try:
-        low, high, prior = float(table["low"]), float(table["high"]), float(table["prior"])
-        keys = tuple(table["keys"]) if "keys" in table else (str(table["key"]),)
-        parameter = Parameter(
-            keys, low, high, prior, str(table["source"]), float(table.get("prior_weight", 1.0))
-        )
-    except KeyError as error:
-        raise CalibrationError(f"{where}: {error} is missing") from error
-    if not low <= prior <= high or low == high:
-        raise CalibrationError(f"{where}: must be low <= prior <= high, but is {low}, {prior}, {high}")
-    return parameter
-
-
-def _target(table: Mapping[str, Any]) -> Target:
-    where = f"[[target]] {table.get('scenario', '?')}"
-    _allow(where, table, {"scenario", "energy_kwh", "final_soc_pct"})
-    if "scenario" not in table:
-        raise CalibrationError(f"{where}: `scenario` is missing")
-    return Target(str(table["scenario"]), table.get("energy_kwh"), table.get("final_soc_pct"))
-
-
-def _allow(where: str, table: Mapping[str, Any], allowed: set[str]) -> None:
-    unknown = sorted(set(table) - allowed)
-    if unknown:
-        raise CalibrationError(
-            f"{where}: unknown `{unknown[0]}`, expected one of {', '.join(sorted(allowed))}"
-        )
+    _once("soft_claim", (str(table.id) for table in file.soft_claim))
+    return Problem(
+        parameters=parameters,
+        targets=targets,
+        soft_claims={table.id: table.weight for table in file.soft_claim},
+        **file.calibration.model_dump(),
+    )
 
 
 def _once(what: str, names: Iterable[str]) -> None:

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hp_gym import _core
-from hp_gym.studies.calibration.problem import CalibrationError, Parameter, Problem
+from hp_gym.studies.calibration.calibration_file import Parameter
+from hp_gym.studies.calibration.problem import CalibrationError, Problem
 from hp_gym.studies.reproduction.claims import CLAIMS, by_label
 from hp_gym.studies.reproduction.paper import LABELS
 from hp_gym.studies.reproduction.runs import simulate_all

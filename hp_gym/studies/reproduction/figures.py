@@ -10,10 +10,10 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from hp_gym.files import atomic_write
 from hp_gym.pictures.plotting import STYLE
 from hp_gym.studies.reproduction.paper import PUBLISHED_SCENARIOS
 from hp_gym.studies.reproduction.runs import Runs
+from hp_gym.transactions import new_contents
 
 DESCRIPTIONS: Final = {scenario.label: scenario.description for scenario in PUBLISHED_SCENARIOS}
 
@@ -112,13 +112,16 @@ def draw(panel: Panel, runs: Runs) -> Figure:
 
 
 def write_all(runs: Runs, folder: Path) -> list[Path]:
-    """Writes all figures into a folder and returns their paths."""
-    folder.mkdir(parents=True, exist_ok=True)
-    paths = []
-    for panel in PANELS:
-        path = folder / panel.file
-        figure = draw(panel, runs)
-        with mpl.rc_context(STYLE), atomic_write(path) as temporary:
-            figure.savefig(temporary, format="png")
-        paths.append(path)
-    return paths
+    """Writes all figures into a folder, or none, and returns their paths.
+
+    Raises:
+        FileError: The folder cannot be replaced.
+        InUseError: Another process writes to it.
+        OSError: It cannot be written to; what was there before is intact.
+    """
+    with new_contents(folder) as staged:
+        for panel in PANELS:
+            figure = draw(panel, runs)
+            with mpl.rc_context(STYLE):
+                figure.savefig(staged / panel.file, format="png")
+    return [folder / panel.file for panel in PANELS]
