@@ -19,6 +19,7 @@ from stable_baselines3.common.vec_env import VecNormalize
 from hp_gym import ConfigurationError, _core
 from hp_gym.agents import policies
 from hp_gym.agents.policies import reference
+from hp_gym.agents.policies.checksum import CHECKSUM_KEY, checksum
 from hp_gym.agents.policies.from_sb3 import from_sb3
 from hp_gym.agents.policies.policy_file import METADATA_KEY
 from hp_gym.agents.policies.saved_policy import PolicyEnvironment, SavedPolicy
@@ -192,7 +193,8 @@ def rewrite(
     metadata, numbers = header(file), load_file(file)
     change(metadata)
     tensors(numbers)
-    save_file(numbers, file, {METADATA_KEY: json.dumps(metadata)})
+    text = json.dumps(metadata)
+    save_file(numbers, file, {METADATA_KEY: text, CHECKSUM_KEY: checksum(text, numbers)})
 
 
 def refused(file: Path, reason: str) -> None:
@@ -224,7 +226,7 @@ def test_foreign_files_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        (lambda told: told.update(format_version=2), "`format_version` is 2, but should be 1"),
+        (lambda told: told.update(format_version=3), "`format_version` is 3, but should be 1 or 2"),
         (lambda told: told.pop("algorithm"), "`algorithm` is missing"),
         (lambda told: told.update(extra=1), "`extra` is unknown"),
         (lambda told: told["network"].update(activation="sin"), "`network.activation` is 'sin'"),

@@ -1,7 +1,6 @@
 """Policies as ONNX graphs, for runtimes outside Python."""
 
 import os
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -9,8 +8,9 @@ import onnx
 from google.protobuf.message import DecodeError
 from onnx import TensorProto, helper, numpy_helper
 
+from hp_gym.agents.policies.checksum import CHECKSUM_KEY, checksum
 from hp_gym.agents.policies.errors import PolicyError
-from hp_gym.agents.policies.policy_file import METADATA_KEY, assemble, tensors_of
+from hp_gym.agents.policies.policy_file import METADATA_KEY, assemble, file_bytes, metadata_text, tensors_of
 from hp_gym.agents.policies.saved_policy import MASKED_LOGIT, SavedPolicy
 
 # Old enough for runtimes on devices.
@@ -59,7 +59,8 @@ def to_model(policy: SavedPolicy) -> onnx.ModelProto:
     model = helper.make_model(
         graph, opset_imports=[helper.make_opsetid("", _OPSET)], ir_version=_IR_VERSION, producer_name="hp_gym"
     )
-    helper.set_model_props(model, {METADATA_KEY: metadata.model_dump_json()})
+    text = metadata_text(policy)
+    helper.set_model_props(model, {METADATA_KEY: text, CHECKSUM_KEY: checksum(text, tensors)})
     onnx.checker.check_model(model)
     return model
 
@@ -74,22 +75,27 @@ def read(path: str | os.PathLike[str]) -> SavedPolicy:
     name = os.fspath(path)
     try:
         # From bytes: a graph can then not name other files to be read.
-        model = onnx.load_model_from_string(Path(path).read_bytes())
+        model = onnx.load_model_from_string(file_bytes(path))
     except DecodeError as error:
         message = f"{name}: no complete ONNX file"
         raise PolicyError(message) from error
     texts = [entry.value for entry in model.metadata_props if entry.key == METADATA_KEY]
+    sums = [entry.value for entry in model.metadata_props if entry.key == CHECKSUM_KEY]
     if len(texts) != 1:
         message = f"{name}: no ONNX file of a policy of hp_gym (no `{METADATA_KEY}` in its metadata)"
+        raise PolicyError(message)
+    if any(entry.data_location == TensorProto.EXTERNAL for entry in model.graph.initializer):
+        message = f"{name}: its numbers are in another file, but must be in the file itself"
         raise PolicyError(message)
     try:
         tensors: dict[str, Any] = {
             entry.name: numpy_helper.to_array(entry) for entry in model.graph.initializer
         }
-    except (ValueError, TypeError, OSError) as error:
-        message = f"{name}: a tensor cannot be read ({error})"
+    # What the library raises on a tensor that does not fit itself differs from case to case.
+    except Exception as error:
+        message = f"{name}: a tensor cannot be read ({type(error).__name__}: {error})"
         raise PolicyError(message) from error
-    policy = assemble(name, texts[0], tensors)
+    policy = assemble(name, texts[0], tensors, sums[0] if sums else None)
     if to_model(policy).graph != model.graph:
         message = f"{name}: the graph is not the one that its metadata describe"
         raise PolicyError(message)

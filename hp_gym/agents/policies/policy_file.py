@@ -3,7 +3,6 @@
 import json
 import os
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -14,15 +13,17 @@ from safetensors.numpy import load as from_bytes
 from safetensors.numpy import save as to_bytes
 
 from hp_gym import ConfigurationError
+from hp_gym.agents.policies.checksum import CHECKSUM_KEY, checksum, verify
 from hp_gym.agents.policies.errors import PolicyError
-from hp_gym.agents.policies.saved_policy import Metadata, Normalisation, SavedPolicy
-from hp_gym.files import atomic_write, require_suffix
+from hp_gym.agents.policies.saved_policy import FORMAT_VERSION, Metadata, Normalisation, SavedPolicy
+from hp_gym.files import atomic_write, read_bytes, require_suffix
+from hp_gym.messages import FileError
 from hp_gym.pydantic_errors import one_line
 
 METADATA_KEY: Final = "hp_gym_policy"
 """Key of the JSON text in the header."""
 
-_LARGEST_BYTES: Final = 256 * 2**20
+LARGEST_BYTES: Final = 256 * 2**20
 
 Tensors = Mapping[str, NDArray[Any]]
 
@@ -35,7 +36,8 @@ def save(path: str | os.PathLike[str], policy: SavedPolicy) -> None:
         OSError: The file cannot be written; what was there before is intact.
     """
     require_suffix(path, [".safetensors"])
-    data = to_bytes(tensors_of(policy), {METADATA_KEY: policy.metadata.model_dump_json()})
+    tensors, text = tensors_of(policy), metadata_text(policy)
+    data = to_bytes(tensors, {METADATA_KEY: text, CHECKSUM_KEY: checksum(text, tensors)})
     with atomic_write(path) as temporary:
         temporary.write_bytes(data)
 
@@ -47,13 +49,25 @@ def read(path: str | os.PathLike[str]) -> SavedPolicy:
         PolicyError: The file is truncated, foreign, or does not fit this version of hp_gym.
         OSError: The file cannot be read.
     """
-    name = os.fspath(path)
-    with Path(path).open("rb") as file:
-        size = os.fstat(file.fileno()).st_size
-        if size > _LARGEST_BYTES:
-            message = f"{name}: has {size} bytes, but a policy file has at most {_LARGEST_BYTES}"
-            raise PolicyError(message)
-        return parse(name, file.read())
+    return parse(os.fspath(path), file_bytes(path))
+
+
+def file_bytes(path: str | os.PathLike[str]) -> bytes:
+    """Reads a policy file of any kind.
+
+    Raises:
+        PolicyError: It is no regular file, or too large for a policy.
+        OSError: It cannot be read.
+    """
+    try:
+        return read_bytes(path, LARGEST_BYTES)
+    except FileError as error:
+        raise PolicyError(str(error)) from error
+
+
+def metadata_text(policy: SavedPolicy) -> str:
+    """Returns the metadata of a policy as a file of today holds them."""
+    return policy.metadata.model_copy(update={"format_version": FORMAT_VERSION}).model_dump_json()
 
 
 def parse(name: str, data: bytes) -> SavedPolicy:
@@ -68,15 +82,16 @@ def parse(name: str, data: bytes) -> SavedPolicy:
     """
     try:
         tensors = from_bytes(data)
-        text = _header(data).get("__metadata__", {}).get(METADATA_KEY)
+        notes = _header(data).get("__metadata__", {})
     # A type of number that numpy lacks is a KeyError of the library.
-    except (SafetensorError, KeyError) as error:
+    except (SafetensorError, KeyError, ValueError, TypeError) as error:
         message = f"{name}: no complete safetensors file ({error})"
         raise PolicyError(message) from error
+    text = notes.get(METADATA_KEY)
     if text is None:
         message = f"{name}: a safetensors file, but no policy of hp_gym (no `{METADATA_KEY}` in its header)"
         raise PolicyError(message)
-    return assemble(name, text, tensors)
+    return assemble(name, text, tensors, notes.get(CHECKSUM_KEY))
 
 
 def _header(data: bytes) -> dict[str, Any]:
@@ -100,22 +115,24 @@ def tensors_of(policy: SavedPolicy) -> dict[str, NDArray[Any]]:
     return tensors
 
 
-def assemble(name: str, text: str, tensors: Tensors) -> SavedPolicy:
+def assemble(name: str, text: str, tensors: Tensors, found: str | None) -> SavedPolicy:
     """Makes a policy of metadata in JSON and tensors, and checks that they fit each other and hp_gym.
 
     Args:
         name: The file, for messages.
         text: Metadata.
         tensors: Numbers by name.
+        found: The checksum in the file; none in older ones.
 
     Raises:
-        PolicyError: Something does not fit.
+        PolicyError: Something does not fit, or is damaged.
     """
     try:
         metadata = Metadata.model_validate_json(text)
     except ValidationError as error:
         message = f"{name}: metadata: {one_line(error)}"
         raise PolicyError(message) from error
+    verify(name, metadata.format_version, found, text, tensors)
     try:
         counts = metadata.environment.option_counts()
     except ConfigurationError as error:

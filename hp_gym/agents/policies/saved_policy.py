@@ -15,7 +15,8 @@ from hp_gym.envs import settings
 Layer: TypeAlias = tuple[NDArray[np.float32], NDArray[np.float32]]
 """Weight (outputs, inputs) and bias (outputs)."""
 
-FORMAT_VERSION: Final = 1
+FORMAT_VERSION: Final = 2
+"""Since 2 a policy file holds a checksum."""
 
 
 MASKED_LOGIT: Final = np.float32(-1e8)
@@ -94,7 +95,7 @@ class Metadata(BaseModel):
 
     model_config = _FROZEN
 
-    format_version: Literal[1] = FORMAT_VERSION
+    format_version: Literal[1, 2] = FORMAT_VERSION
     algorithm: str
     environment: PolicyEnvironment
     network: Network

@@ -3,6 +3,8 @@
 import json
 import os
 import zipfile
+import zlib
+from io import BytesIO
 from pathlib import Path
 from typing import Any, Final
 
@@ -11,10 +13,13 @@ from stable_baselines3.common.vec_env import VecNormalize
 
 from hp_gym.agents.policies.errors import PolicyError
 from hp_gym.agents.policies.from_sb3 import from_sb3
+from hp_gym.agents.policies.policy_file import file_bytes
 from hp_gym.agents.policies.saved_policy import PolicyEnvironment, SavedPolicy
 
 WARNING = "loading a zip file of stable-baselines3 can run any code that its author put there"
 """What a user is told who allows it."""
+
+_LARGEST_DESCRIPTION_BYTES: Final = 64 * 2**20
 
 _NOT_NEEDED: Final = {"learning_rate": 0.0, "lr_schedule": None}
 """What only training needs: a file names a schedule by its module, which may have moved since."""
@@ -75,10 +80,18 @@ def _algorithm(name: str) -> type[BaseAlgorithm]:
     import stable_baselines3
 
     try:
-        with zipfile.ZipFile(name) as archive:
-            told: dict[str, Any] = json.loads(archive.read("data"))
+        with zipfile.ZipFile(BytesIO(file_bytes(name))) as archive:
+            with archive.open("data") as file:
+                # A small file can unpack to a huge one.
+                told: dict[str, Any] = json.loads(file.read(_LARGEST_DESCRIPTION_BYTES))
             module = str(told["policy_class"]["__module__"])
-    except (zipfile.BadZipFile, KeyError, TypeError, ValueError) as error:
+    except PolicyError:
+        raise
+    # What a damaged archive raises differs from case to case.
+    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
+        message = f"{name}: no complete zip file of stable-baselines3"
+        raise PolicyError(message) from error
+    except (KeyError, TypeError, ValueError) as error:
         message = f"{name}: no complete zip file of stable-baselines3"
         raise PolicyError(message) from error
     known: dict[str, type[BaseAlgorithm]] = {
