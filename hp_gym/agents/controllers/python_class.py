@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import sys
+import traceback
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,25 +35,25 @@ def load(reference: str) -> Controller:
         ControllerError: There is no such module or class, it cannot be made, or it has no `predict`.
     """
     instance = _instance(reference)
-    predict: Callable[..., Any] | None = getattr(instance, "predict", None)
+    with _told(f"controller `{reference}` cannot be used"):
+        predict: Callable[..., Any] | None = getattr(instance, "predict", None)
+        environment = getattr(instance, "environment", {})
+        starter: Callable[..., Any] | None = getattr(instance, "begin", None)
     if not callable(predict):
         raise ControllerError(f"controller `{reference}` has no method `predict(observations)`")
-    environment = getattr(instance, "environment", {})
     if not isinstance(environment, dict):
         message = f"controller `{reference}`: `environment` is {environment!r}, but must be a dict"
         raise ControllerError(message)
 
     def begin(env: EVHeatPumpVectorEnv) -> Act:
-        starter = getattr(instance, "begin", None)
         if starter is not None:
-            starter(env)
+            with _told("begin failed"):
+                starter(env)
 
         def act(observations: object) -> Action:
-            try:
+            with _told("predict failed"):
                 answer = predict(observations)
-            except Exception as error:  # whatever a stranger's class raises
-                raise ControllerError(f"predict failed: {type(error).__name__}: {error}") from error
-            actions: Action = np.asarray(answer[0] if isinstance(answer, tuple) else answer)
+                actions: Action = np.asarray(answer[0] if isinstance(answer, tuple) else answer)
             return actions
 
         return act
@@ -64,21 +65,42 @@ def _instance(reference: str) -> object:
     module_name, _, class_name = reference.partition(":")
     if not module_name or not class_name:
         raise ControllerError(f"controller `{reference}` must read module:Class")
+    with _told(f"controller `{reference}`: cannot import `{module_name}`"), _working_folder_first():
+        module = importlib.import_module(module_name)
+    if not hasattr(module, class_name):
+        raise ControllerError(f"controller `{reference}`: module `{module_name}` has no `{class_name}`")
+    with _told(f"controller `{reference}` cannot be made"):
+        made: object = getattr(module, class_name)()
+    return made
+
+
+@contextmanager
+def _told(what: str) -> Generator[None]:
+    """Turns whatever a stranger's class raises into one line with the place where it did.
+
+    Raises:
+        ControllerError: Something was raised.
+    """
     try:
-        with _working_folder_first():
-            module = importlib.import_module(module_name)
-        found = getattr(module, class_name)
-    except ImportError as error:
-        raise ControllerError(f"controller `{reference}`: cannot import `{module_name}`: {error}") from error
-    except AttributeError as error:
-        raise ControllerError(
-            f"controller `{reference}`: module `{module_name}` has no `{class_name}`"
-        ) from error
-    try:
-        return found()
-    except Exception as error:  # whatever a stranger's class raises
-        message = f"controller `{reference}` cannot be made: {type(error).__name__}: {error}"
-        raise ControllerError(message) from error
+        yield
+    except ControllerError:
+        raise
+    # `sys.exit` in somebody's module must not end a benchmark without a word.
+    except (Exception, SystemExit) as error:
+        kind = type(error).__name__
+        raise ControllerError(f"{what}: {kind}: {error}{_place(error)}") from error
+
+
+def _place(error: BaseException) -> str:
+    """File and line of the last frame that is not this module's or the import machinery's."""
+    if isinstance(error, SyntaxError) and error.filename is not None:
+        return f" ({error.filename}, line {error.lineno})"
+    frames = [
+        frame
+        for frame in traceback.extract_tb(error.__traceback__)
+        if frame.filename not in {__file__, importlib.__file__} and not frame.filename.startswith("<frozen ")
+    ]
+    return f" ({frames[-1].filename}, line {frames[-1].lineno})" if frames else ""
 
 
 @contextmanager

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections import defaultdict
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
@@ -55,11 +56,14 @@ def drive_all(
         ControllerError: A controller's environment cannot be made, or its actions do not fit.
     """
     workers = threads or os.cpu_count() or 1
+    over = threading.Event()
     with ThreadPoolExecutor(workers) as pool:
-        futures = [pool.submit(drive, *task, files, progress) for task in tasks]
+        futures = [pool.submit(drive, *task, files, progress, over) for task in tasks]
         try:
             return [future.result() for future in futures]
         except BaseException:
+            # Controllers under way end with their present step, not with their last trip.
+            over.set()
             pool.shutdown(cancel_futures=True)
             raise
 
@@ -69,8 +73,16 @@ def drive(
     scenarios: Sequence[Scenario],
     files: Mapping[str, Path],
     progress: Progress = lambda _: None,
+    over: threading.Event | None = None,
 ) -> list[Row]:
     """Drives one controller over scenarios; see `drive_all`.
+
+    Args:
+        controller: Who drives.
+        scenarios: What.
+        files: File of each scenario by name.
+        progress: Told of every trip that has ended.
+        over: Ends all of it, once set.
 
     Raises:
         ControllerError: Its environment cannot be made, or its actions do not fit.
@@ -83,7 +95,7 @@ def drive(
     for places in groups.values():
         chosen = [scenarios[place] for place in places]
         try:
-            driven = _drive_group(controller, chosen, files, progress)
+            driven = _drive_group(controller, chosen, files, progress, over)
         except (ValueError, TypeError) as error:
             raise ControllerError(f"controller `{controller.name}`: {error}") from error
         for place, row in zip(places, driven, strict=True):
@@ -92,7 +104,11 @@ def drive(
 
 
 def _drive_group(
-    controller: Controller, scenarios: Sequence[Scenario], files: Mapping[str, Path], progress: Progress
+    controller: Controller,
+    scenarios: Sequence[Scenario],
+    files: Mapping[str, Path],
+    progress: Progress,
+    over: threading.Event | None,
 ) -> list[Row]:
     rows: list[Row] = [{} for _ in scenarios]
     env = _environment(controller, scenarios, files)
@@ -101,6 +117,8 @@ def _drive_group(
         act = controller.begin(env)
         left = len(rows)
         while left:
+            if over is not None and over.is_set():
+                raise CancelledError
             observations, _, terminated, _, infos = env.step(act(observations))
             if not terminated.any():
                 continue

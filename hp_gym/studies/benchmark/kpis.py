@@ -55,10 +55,12 @@ def measure(
     charge_used_pct = scenario.variant.state_of_charge_pct - totals["final_charge_soc_pct"]
     values = {name: terms[name] for name in _REWARD_TERMS} | {name: totals[name] for name in _TOTALS}
     values |= {
-        "attributable_energy_kwh_per_100_km": 100.0 * terms["attributable_energy_kwh"] / distance_km,
+        "attributable_energy_kwh_per_100_km": _quotient(
+            100.0 * terms["attributable_energy_kwh"], distance_km
+        ),
         "pump_energy_kwh": totals["htc_pump_energy_kwh"] + totals["chiller_pump_energy_kwh"],
         # A full battery at this trip's consumption of charge.
-        "range_km": 100.0 * distance_km / charge_used_pct,
+        "range_km": _quotient(100.0 * distance_km, charge_used_pct),
         "comfortable_share_pct": 100.0 * totals["comfortable_share"],
         "stranded": 0.0 if end_reason == ARRIVED else 1.0,
     }
@@ -73,3 +75,8 @@ def measure(
         "end_reason": end_reason,
     }
     return {name: identity[name] for name in IDENTITY} | {name: values[name] for name in KPIS}
+
+
+def _quotient(value: float, divisor: float) -> float:
+    """What does not exist, for a trip of 0 km or one that used no charge, is NaN."""
+    return value / divisor if divisor else float("nan")
