@@ -1,6 +1,9 @@
 """An electric vehicle's heat pump and thermal system as a Gymnasium environment."""
 
-from hp_gym import processor  # noqa: F401, first: it refuses to load an extension that cannot run here
+from hp_gym import (
+    ctrl_c,  # noqa: F401, first: Ctrl-C may come while the rest is loaded
+    native,  # noqa: F401, first: it looks whether the extension can run here, and makes it ready
+)
 from hp_gym._core import ConfigurationError, Experiment, Run, __version__, names
 from hp_gym.command import encode
 from hp_gym.registration import register_envs

@@ -7,13 +7,14 @@ import typer
 from hp_gym.cli.benchmark_command import benchmark
 from hp_gym.cli.calibrate_command import calibrate
 from hp_gym.cli.export_command import export
-from hp_gym.cli.interrupts import hook, stoppable
+from hp_gym.cli.interrupts import stoppable
 from hp_gym.cli.reproduce_command import reproduce
 from hp_gym.cli.run_command import run
 from hp_gym.cli.scenarios_command import scenarios
 from hp_gym.cli.speed_command import speed
 from hp_gym.cli.train_command import train
 from hp_gym.cli.tune_command import tune
+from hp_gym.ctrl_c import hook
 
 app = typer.Typer(
     name="hp-gym",

@@ -1,18 +1,13 @@
 """What Ctrl-C does, and memory that does not suffice: one line on standard error."""
 
 import functools
-import os
-import sys
 from collections.abc import Callable
-from types import TracebackType
-from typing import Final, ParamSpec, TypeVar
+from typing import ParamSpec, TypeVar
 
 import typer
 
 from hp_gym.cli.output import fail
-
-INTERRUPTED: Final = 130
-"""Exit code of a command that Ctrl-C has ended."""
+from hp_gym.ctrl_c import INTERRUPTED
 
 _Parameters = ParamSpec("_Parameters")
 _Result = TypeVar("_Result")
@@ -42,19 +37,3 @@ def stoppable(command: Callable[_Parameters, _Result], kept: str = "") -> Callab
             fail("memory does not suffice for what was asked for")
 
     return run
-
-
-def hook() -> None:
-    """Lets Ctrl-C outside of commands, while libraries are loaded, end the process with one line too."""
-    before = sys.excepthook
-
-    def tell(kind: type[BaseException], error: BaseException, traceback: TracebackType | None) -> None:
-        if not issubclass(kind, KeyboardInterrupt):
-            before(kind, error, traceback)
-            return
-        sys.stdout.flush()
-        os.write(2, b"hp-gym: stopped\n")
-        # Python itself would end by the signal, without an exit code.
-        os._exit(INTERRUPTED)
-
-    sys.excepthook = tell

@@ -5,8 +5,9 @@ from typing import Annotated
 
 import typer
 
-from hp_gym.cli.interrupts import INTERRUPTED, stopped
+from hp_gym.cli.interrupts import stopped
 from hp_gym.cli.output import console, fail, print_json
+from hp_gym.ctrl_c import INTERRUPTED
 
 
 def train(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from hp_gym import _core, signals
 from hp_gym.envs import settings
 from hp_gym.envs.env import EVHeatPumpEnv
+from hp_gym.memory import shortage
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -20,6 +21,11 @@ if TYPE_CHECKING:
     from hp_gym.envs.settings import Action, Name
     from hp_gym.overrides import Overrides, Value
     from hp_gym.pictures.rendering import Renderer
+
+_LEAST_BYTES: Final = 4096
+"""What an environment takes at least, spaces and observations included (`hp-gym speed` measures it)."""
+
+_THREADS_A_CORE: Final = 4
 
 _PARTS = tuple(_core.reward_parts())
 _PART_KEYS = tuple((name, f"_{name}") for name in _PARTS)
@@ -33,7 +39,8 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         render_mode: `"rgb_array"` or None; `render()` returns a picture of each environment.
         max_episode_steps: Steps after which a trip is cut off.
         autoreset_mode: `NEXT_STEP`, `SAME_STEP` or `DISABLED`, or its value.
-        threads: Number of threads; as many as there are cores by default. Results do not depend on it.
+        threads: Number of threads; as many as there are cores by default, at most one an environment and four
+            a core. Results do not depend on it.
         scenario: One for all environments, or one for each.
         distribution: One for all environments, or one for each.
         continuous: As for `EVHeatPumpEnv`, as are all that follow.
@@ -69,6 +76,11 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         render_size: tuple[int, int] = (960, 540),
     ) -> None:
         self.num_envs = _at_least_one("num_envs", num_envs)
+        # Before lists of that length are made.
+        lacking = shortage(self.num_envs * _LEAST_BYTES)
+        if lacking is not None:
+            message = f"num_envs is {self.num_envs:,}, which {lacking}"
+            raise _core.ConfigurationError(message)
         if render_mode not in {None, "rgb_array"}:
             message = f"render_mode is {render_mode!r}, but must be None or rgb_array"
             raise _core.ConfigurationError(message)
@@ -84,7 +96,10 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         )
         trips = self._trips(scenario, distribution, settings.DEFAULT_DISTRIBUTION)
         limit = None if max_episode_steps is None else _at_least_one("max_episode_steps", max_episode_steps)
-        workers = (os.cpu_count() or 1) if threads is None else _at_least_one("threads", threads)
+        cores = os.cpu_count() or 1
+        wanted = cores if threads is None else _at_least_one("threads", threads)
+        # More than one an environment would have nothing to do, and many more than cores only wait.
+        workers = min(wanted, self.num_envs, _THREADS_A_CORE * cores)
         as_json = chosen.to_json()
         self._core = _core.Vector(as_json, *trips, self.autoreset_mode.value, limit, workers)
         self._noisy = sensor_noise > 0.0

@@ -20,7 +20,7 @@ from hp_gym import toml_files
 from hp_gym.messages import FileError, OneLineError
 from hp_gym.pydantic_errors import one_line
 
-Count: TypeAlias = Annotated[int, Field(ge=1)]
+Count: TypeAlias = Annotated[int, Field(ge=1, le=2**62)]
 Positive: TypeAlias = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative: TypeAlias = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 Pair: TypeAlias = Annotated[list[float], Field(min_length=2, max_length=2)]
@@ -74,8 +74,8 @@ class LearningRate(_Table):
 class Network(_Table):
     """Multilayer perceptrons of policy and value function, which share nothing."""
 
-    hidden_sizes: list[Count]
-    value_hidden_sizes: list[Count] | None = None
+    hidden_sizes: Annotated[list[Count], Field(max_length=64)]
+    value_hidden_sizes: Annotated[list[Count], Field(max_length=64)] | None = None
     """As those of the policy by default."""
     activation: Literal["tanh", "relu"] = "tanh"
 
@@ -224,7 +224,7 @@ class _Common(_Table):
     description: str = ""
     total_decisions: Count
     checkpoint_interval_decisions: Count
-    torch_threads: Count = 2
+    torch_threads: Annotated[int, Field(ge=1, le=256)] = 2
     environments: Environments
     environment: Environment
     learning_rate: LearningRate

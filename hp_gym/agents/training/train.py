@@ -18,6 +18,7 @@ from torch.utils.tensorboard.writer import SummaryWriter
 from hp_gym.agents.training import algorithms, checkpoint, environments, imitation
 from hp_gym.agents.training.comfort import ComfortConstraint
 from hp_gym.agents.training.configuration import MaskablePPOTraining, PPOTraining, Training
+from hp_gym.agents.training.memory_need import require_memory
 from hp_gym.agents.training.run_folder import RunFolder
 from hp_gym.agents.training.validation import Figures, Validation
 from hp_gym.agents.training.watch import Run, Watch
@@ -102,6 +103,7 @@ def _resume(folder: RunFolder) -> Outcome:
 
 
 def _model(training: Training, seed: int) -> BaseAlgorithm:
+    require_memory(training)
     torch.set_num_threads(training.torch_threads)
     return algorithms.make(training, environments.make(training), seed)
 

@@ -1,11 +1,13 @@
 """The simulated counterparts of the paper's scenarios."""
 
 import os
+import threading
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from time import perf_counter
 from typing import TypeAlias
 
+from hp_gym import native
 from hp_gym._core import Experiment
 from hp_gym.trajectory import Trajectory
 
@@ -27,9 +29,16 @@ def simulate_all(
         Runs in the order of the scenarios, and the seconds that the simulations took, loading excluded.
     """
     experiments = [Experiment(scenario, None, overrides, substeps) for scenario in scenarios]
+    over = threading.Event()
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         start_s = perf_counter()
-        results = list(pool.map(Experiment.simulate, experiments))
+        futures = [pool.submit(native.simulate, experiment, substeps, over) for experiment in experiments]
+        try:
+            results = [future.result() for future in futures]
+        except BaseException:
+            over.set()
+            pool.shutdown(cancel_futures=True)
+            raise
         wall_s = perf_counter() - start_s
     runs = [
         Trajectory(scenario, experiment.controller, end, summary, experiment.limits(), values)
