@@ -40,13 +40,17 @@ def read_bytes(path: str | os.PathLike[str], largest: int) -> bytes:
     """
     name = os.fspath(path)
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-    with open(os.open(name, flags), "rb") as file:  # noqa: PTH123, opened without waiting
-        status = os.fstat(file.fileno())
+    descriptor = os.open(name, flags)
+    try:
+        status = os.fstat(descriptor)
         if not stat.S_ISREG(status.st_mode):
             message = f"{name}: is no regular file"
             raise FileError(message)
-        # A file may grow while it is read.
-        data = b"" if status.st_size > largest else file.read(largest + 1)
+        with open(descriptor, "rb", closefd=False) as file:  # noqa: PTH123, opened without waiting
+            # A file may grow while it is read.
+            data = b"" if status.st_size > largest else file.read(largest + 1)
+    finally:
+        os.close(descriptor)
     if max(status.st_size, len(data)) > largest:
         message = f"{name}: has {max(status.st_size, len(data))} bytes, but may have at most {largest}"
         raise FileError(message)
