@@ -46,7 +46,7 @@ def read_bytes(path: str | os.PathLike[str], largest: int) -> bytes:
         if not stat.S_ISREG(status.st_mode):
             message = f"{name}: is no regular file"
             raise FileError(message)
-        with open(descriptor, "rb", closefd=False) as file:  # noqa: PTH123, opened without waiting
+        with open(descriptor, "rb", closefd=False) as file:
             # A file may grow while it is read.
             data = b"" if status.st_size > largest else file.read(largest + 1)
     finally:

@@ -26,7 +26,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from hp_gym import transactions
-from hp_gym.files import atomic_write
+from hp_gym.files import OURS, atomic_write
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -301,6 +301,8 @@ def random_interrupts(place: Path, number: int, tally: Tally, chance: random.Ran
         waits_s, stopped = [], 0
         for attempt in range(number):
             shutil.rmtree(place / "train", ignore_errors=True)
+            # A search would go on with what it has, and end too soon.
+            (place / f".tune.{OURS}trials.jsonl").unlink(missing_ok=True)
             process = begin(words)
             # Python itself starts in the first moment.
             time.sleep(chance.uniform(0.15, duration_s))

@@ -46,6 +46,9 @@ WORDS = {
 }
 
 
+SHIPPED = {"training configuration": "ppo", "benchmark": "heldout-v0", "calibration": "jeffs2019"}
+
+
 def attempt(read: Callable[[], Any]) -> Any:
     """What a reader gives, or None if it refuses in a short line of this package."""
     try:
