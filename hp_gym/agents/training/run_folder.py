@@ -140,7 +140,7 @@ class RunFolder:
 
     def write_status(self, told: Mapping[str, Any]) -> None:
         """Notes how the run goes."""
-        # A power cut loses nothing that a checkpoint does not hold; waiting for a busy disk would hold up the run.
+        # A power cut loses nothing that a checkpoint does not hold; a busy disk would hold up the run.
         self._write("status.json", _json(told), durable=False)
 
     def write_history(self, rows: Sequence[Mapping[str, Any]]) -> None:
