@@ -226,10 +226,17 @@ def commands(place: Path) -> dict[str, list[str]]:
 
 def begin(words: list[str]) -> subprocess.Popen[str]:
     """Starts a command."""
-    code = "import sys; sys.argv[0] = 'hp-gym'; from hp_gym.cli.app import main; main()"
-    return subprocess.Popen(
+    code = (
+        "import sys; print(file=sys.stderr, flush=True); sys.argv[0] = 'hp-gym'\n"
+        "from hp_gym.cli.app import main; main()"
+    )
+    process = subprocess.Popen(
         [sys.executable, "-c", code, *words], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
     )
+    # Before that it is Python that starts, not the command.
+    assert process.stderr is not None
+    process.stderr.readline()
+    return process
 
 
 def complete(words: list[str]) -> float:
@@ -282,7 +289,9 @@ def random_kills(place: Path, kills: int, tally: Tally, chance: random.Random) -
         tally.require(not debris, f"{name}: debris {debris}")
 
 
-def random_interrupts(place: Path, number: int, tally: Tally, chance: random.Random) -> None:
+def random_interrupts(
+    place: Path, number: int, tally: Tally, chance: random.Random, chosen: list[str] | None
+) -> None:
     """Sends Ctrl-C at random moments and prints how long commands take to end."""
     every = commands(place) | {
         "run": ["run", "jeffs2019/case1-4", "--out", str(place / "run.csv")],
@@ -296,6 +305,8 @@ def random_interrupts(place: Path, number: int, tally: Tally, chance: random.Ran
         ],
     }
     for name, words in every.items():
+        if chosen and name not in chosen:
+            continue
         shutil.rmtree(place / "train", ignore_errors=True)
         duration_s = complete(words)
         waits_s, stopped = [], 0
@@ -304,8 +315,8 @@ def random_interrupts(place: Path, number: int, tally: Tally, chance: random.Ran
             # A search would go on with what it has, and end too soon.
             (place / f".tune.{OURS}trials.jsonl").unlink(missing_ok=True)
             process = begin(words)
-            # Python itself starts in the first moment.
-            time.sleep(chance.uniform(0.15, duration_s))
+            # Until the first lines of the package are run Ctrl-C is Python's.
+            time.sleep(chance.uniform(0.1, duration_s))
             process.send_signal(signal.SIGINT)
             began_s = time.perf_counter()
             _, told = process.communicate()
@@ -333,6 +344,7 @@ def main() -> None:
     )
     parser.add_argument("--kills", type=int, default=0, help="random kills of each command")
     parser.add_argument("--interrupts", type=int, default=0, help="random interrupts of each command")
+    parser.add_argument("--commands", nargs="*", help="commands to interrupt; all by default")
     parser.add_argument("--seed", type=int, default=0)
     chosen = parser.parse_args()
     tally, chance = Tally(), random.Random(chosen.seed)
@@ -346,7 +358,7 @@ def main() -> None:
             random_kills(place / "kills", chosen.kills, tally, chance)
         if chosen.interrupts:
             (place / "interrupts").mkdir()
-            random_interrupts(place / "interrupts", chosen.interrupts, tally, chance)
+            random_interrupts(place / "interrupts", chosen.interrupts, tally, chance, chosen.commands)
     for what, number in tally.counts.items():
         print(f"{what}: {number}")
     for what in tally.wrong:

@@ -4,10 +4,10 @@ from typing import Annotated
 
 import typer
 
+from hp_gym.cli import interrupts
 from hp_gym.cli.benchmark_command import benchmark
 from hp_gym.cli.calibrate_command import calibrate
 from hp_gym.cli.export_command import export
-from hp_gym.cli.interrupts import stoppable
 from hp_gym.cli.reproduce_command import reproduce
 from hp_gym.cli.run_command import run
 from hp_gym.cli.scenarios_command import scenarios
@@ -30,11 +30,11 @@ for command, kept in (
     (reproduce, _AS_BEFORE),
     (calibrate, _AS_BEFORE),
     (tune, "trials so far are kept, and the same command goes on with them"),
-    (train, "no run was begun, and nothing was written"),
+    (train, "nothing was written"),
     (export, _AS_BEFORE),
     (speed, ""),
 ):
-    app.command()(stoppable(command, kept))
+    app.command()(interrupts.stoppable(command, kept))
 
 
 def _print_version(wanted: bool) -> None:
@@ -60,4 +60,4 @@ def _root(
 def main() -> None:
     """Runs the command line."""
     hook()
-    app()
+    interrupts.run(app)

@@ -13,9 +13,29 @@ _Parameters = ParamSpec("_Parameters")
 _Result = TypeVar("_Result")
 
 
+_told = False
+
+
 def stopped(kept: str = "") -> None:
     """Tells that a command was stopped, and what of its work is kept."""
+    global _told  # noqa: PLW0603, a process is stopped once
+    _told = True
     typer.echo(f"hp-gym: stopped{'; ' if kept else ''}{kept}", err=True)
+
+
+def run(app: typer.Typer) -> None:
+    """Runs a command line; where Ctrl-C comes outside of a command, it is told all the same.
+
+    Raises:
+        SystemExit: Always, with the exit code.
+    """
+    try:
+        app()
+    except SystemExit as end:
+        # Typer ends without a word.
+        if end.code == INTERRUPTED and not _told:
+            stopped()
+        raise
 
 
 def stoppable(command: Callable[_Parameters, _Result], kept: str = "") -> Callable[_Parameters, _Result]:
@@ -27,7 +47,7 @@ def stoppable(command: Callable[_Parameters, _Result], kept: str = "") -> Callab
     """
 
     @functools.wraps(command)
-    def run(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
+    def call(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
         try:
             return command(*args, **kwargs)
         except KeyboardInterrupt:
@@ -36,4 +56,4 @@ def stoppable(command: Callable[_Parameters, _Result], kept: str = "") -> Callab
         except MemoryError:
             fail("memory does not suffice for what was asked for")
 
-    return run
+    return call

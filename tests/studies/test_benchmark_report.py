@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 import hp_gym
 from hp_gym.agents.controllers import resolve
 from hp_gym.agents.controllers.rule_based import rules
+from hp_gym.json_text import plain
 from hp_gym.studies.benchmark import benchmark_plan, grid, matched
 from hp_gym.studies.benchmark.report import energy_flows, headline, traces, write_report
 from hp_gym.studies.benchmark.report.layout import Layout
 from hp_gym.studies.benchmark.report.page import render
 from hp_gym.studies.benchmark.report.pareto import hull
 from hp_gym.studies.benchmark.report.shown import decimal
-from hp_gym.studies.benchmark.results_folder import plain
 
 NASTY = '<b onmouseover="alert(1)">bold</b></script><script>alert(2)</script> & "co"'
 COOLER_HTC = {"controller.htc_set_point_degc": 60.0}
