@@ -1,13 +1,15 @@
 """What Ctrl-C does, and memory that does not suffice: one line on standard error."""
 
 import functools
+import warnings
 from collections.abc import Callable
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 import typer
 
 from hp_gym.cli.output import fail
 from hp_gym.ctrl_c import INTERRUPTED
+from hp_gym.messages import UncheckedFileWarning, in_one_line
 
 _Parameters = ParamSpec("_Parameters")
 _Result = TypeVar("_Result")
@@ -29,6 +31,7 @@ def run(app: typer.Typer) -> None:
     Raises:
         SystemExit: Always, with the exit code.
     """
+    warnings.showwarning = _note(warnings.showwarning)
     try:
         app()
     except SystemExit as end:
@@ -36,6 +39,18 @@ def run(app: typer.Typer) -> None:
         if end.code == INTERRUPTED and not _told:
             stopped()
         raise
+
+
+def _note(before: Callable[..., None]) -> Callable[..., None]:
+    """Shows notes of this package in one line, without the line of code that they come from."""
+
+    def show(message: Warning | str, category: type[Warning], *others: Any) -> None:
+        if issubclass(category, UncheckedFileWarning):
+            typer.echo(f"hp-gym: note: {in_one_line(str(message))}", err=True)
+        else:
+            before(message, category, *others)
+
+    return show
 
 
 def stoppable(command: Callable[_Parameters, _Result], kept: str = "") -> Callable[_Parameters, _Result]:

@@ -3,6 +3,8 @@
 import json
 import math
 import os
+import subprocess
+import sys
 import tomllib
 import warnings
 from collections.abc import Callable
@@ -321,6 +323,20 @@ def test_an_older_policy_is_checked_value_by_value_and_noted(policy: SavedPolicy
         assert "finite numbers" in told(policies.load, path)
     save_file(tensors_of(policy), path, {METADATA_KEY: metadata_text(policy)})
     assert "its checksum is missing" in told(policies.load, path)
+
+
+def test_a_command_notes_an_older_policy_in_one_line(policy: SavedPolicy, tmp_path: Path) -> None:
+    path = tmp_path / "older.safetensors"
+    text = policy.metadata.model_copy(update={"format_version": 1}).model_dump_json()
+    save_file(tensors_of(policy), path, {METADATA_KEY: text})
+    words = ["export", str(path), "--out", str(tmp_path / "newer.safetensors")]
+    code = "from hp_gym.cli.app import main; main()"
+    done = subprocess.run(
+        [sys.executable, "-c", code, *words], check=False, capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == f"hp-gym: note: {path}: without checksum, only its values are checked\n"
+    assert same(policies.load(tmp_path / "newer.safetensors"), policy)
 
 
 def test_every_reference_policy_has_a_checksum() -> None:
