@@ -1,6 +1,7 @@
 """What Ctrl-C does, and memory that does not suffice: one line on standard error."""
 
 import functools
+import signal
 import warnings
 from collections.abc import Callable
 from typing import Any, ParamSpec, TypeVar
@@ -39,6 +40,9 @@ def run(app: typer.Typer) -> None:
         if end.code == INTERRUPTED and not _told:
             stopped()
         raise
+    finally:
+        # The work is done or given up: nothing is left to stop, and the exit code is decided.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _note(before: Callable[..., None]) -> Callable[..., None]:

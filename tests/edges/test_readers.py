@@ -8,6 +8,7 @@ import sys
 import tomllib
 import warnings
 from collections.abc import Callable
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -202,7 +203,8 @@ STRANGE = (
     | st.floats()
     | st.text(max_size=5)
     | st.just(10**400)
-    | st.sampled_from([[], {}, [[]], {"deep": {"unknown": 1}}, [{}], "vehicle.", "x" * 10_000])
+    # Copies, as one may be put into another.
+    | st.sampled_from([[], {}, [[]], {"deep": {"unknown": 1}}, [{}], "vehicle.", "x" * 10_000]).map(deepcopy)
 )
 
 
