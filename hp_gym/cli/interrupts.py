@@ -1,7 +1,9 @@
 """What Ctrl-C does, and memory that does not suffice: one line on standard error."""
 
 import functools
+import os
 import signal
+import sys
 import warnings
 from collections.abc import Callable
 from typing import Any, ParamSpec, TypeVar
@@ -37,11 +39,16 @@ def run(app: typer.Typer) -> None:
         app()
     except SystemExit as end:
         # Typer ends without a word.
-        if end.code == INTERRUPTED and not _told:
-            stopped()
+        if end.code == INTERRUPTED:
+            if not _told:
+                stopped()
+            sys.stdout.flush()
+            sys.stderr.flush()
+            # What was to be kept is written; taking large libraries down in order would take seconds.
+            os._exit(INTERRUPTED)
         raise
     finally:
-        # The work is done or given up: nothing is left to stop, and the exit code is decided.
+        # The work is done: nothing is left to stop, and the exit code is decided.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 

@@ -303,6 +303,15 @@ def test_a_damaged_onnx_file_is_refused_or_the_same(
     assert read is None or same(read, policy)
 
 
+def test_an_onnx_file_with_a_name_that_is_no_text_is_refused(policy: SavedPolicy, tmp_path: Path) -> None:
+    path = tmp_path / "policy.onnx"
+    data = onnx_file.to_model(policy).SerializeToString()
+    path.write_bytes(data.replace(b"layers.0.bias", b"layers.\xff.bias"))
+    told(policies.load, path)
+    path.write_bytes(data.replace(b"MaskablePPO", b"Maskabl\xffPPO").replace(b'"PPO"', b'"P\xffO"'))
+    told(policies.load, path)
+
+
 def test_numbers_of_an_onnx_file_in_another_file_are_refused(policy: SavedPolicy, tmp_path: Path) -> None:
     model = onnx_file.to_model(policy)
     path = tmp_path / "policy.onnx"

@@ -79,8 +79,9 @@ def read(path: str | os.PathLike[str]) -> SavedPolicy:
     except DecodeError as error:
         message = f"{name}: no complete ONNX file"
         raise PolicyError(message) from error
-    texts = [entry.value for entry in model.metadata_props if entry.key == METADATA_KEY]
-    sums = [entry.value for entry in model.metadata_props if entry.key == CHECKSUM_KEY]
+    # Where it is no UTF-8, the library gives bytes, whatever it declares.
+    texts = [str(entry.value) for entry in model.metadata_props if entry.key == METADATA_KEY]
+    sums = [str(entry.value) for entry in model.metadata_props if entry.key == CHECKSUM_KEY]
     if len(texts) != 1:
         message = f"{name}: no ONNX file of a policy of hp_gym (no `{METADATA_KEY}` in its metadata)"
         raise PolicyError(message)
@@ -89,7 +90,7 @@ def read(path: str | os.PathLike[str]) -> SavedPolicy:
         raise PolicyError(message)
     try:
         tensors: dict[str, Any] = {
-            entry.name: numpy_helper.to_array(entry) for entry in model.graph.initializer
+            str(entry.name): numpy_helper.to_array(entry) for entry in model.graph.initializer
         }
     # What the library raises on a tensor that does not fit itself differs from case to case.
     except Exception as error:
