@@ -1,7 +1,11 @@
 """An electric vehicle's heat pump and thermal system as a Gymnasium environment."""
 
-from hp_gym import processor  # noqa: F401, first: it refuses to load an extension that cannot run here
-from hp_gym._core import ConfigurationError, Experiment, Run, __version__, names
+from hp_gym import (  # isort: skip
+    ctrl_c,  # noqa: F401, first: Ctrl-C may come while the rest is loaded
+    processor,  # noqa: F401, second: it refuses to load an extension that cannot run here
+    native,  # noqa: F401, then: it makes the extension ready
+)
+from hp_gym._core import ConfigurationError, Experiment, Run, StateError, __version__, names
 from hp_gym.command import encode
 from hp_gym.registration import register_envs
 from hp_gym.signals import observe
@@ -13,6 +17,7 @@ __all__ = [
     "Controller",
     "Experiment",
     "Run",
+    "StateError",
     "Trajectory",
     "__version__",
     "encode",

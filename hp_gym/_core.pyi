@@ -7,28 +7,46 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "LEVELS",
     "ConfigurationError",
     "Episode",
     "Experiment",
+    "FinishedTrip",
+    "Outcomes",
     "Run",
+    "StateError",
     "Vector",
     "__built_for__",
     "__version__",
+    "action_groups",
     "actuators",
+    "architecture_layout",
     "config_text",
+    "default_settings",
     "names",
     "observation_table",
     "plant_step_seconds",
+    "reference_policy",
+    "reference_policy_names",
     "reward_parts",
     "signals",
     "totals",
+    "vehicle_layout",
 ]
 
 __built_for__: Final[str]
 __version__: Final[str]
+LEVELS: Final[int]
+
+_Actuators: TypeAlias = list[tuple[str, str, list[str], str]]
+_Signals: TypeAlias = list[tuple[str, str, str]]
+_Observed: TypeAlias = list[tuple[str, str, float, float, str]]
 
 class ConfigurationError(ValueError):
     """A file, name or value that the plant does not accept."""
+
+class StateError(ConfigurationError):
+    """A saved state that is damaged, or of something else."""
 
 @final
 class Experiment:
@@ -40,6 +58,7 @@ class Experiment:
         controller: str | None = None,
         overrides: Sequence[str] = ...,
         substeps: int = 1,
+        vehicle: str | None = None,
     ) -> Experiment:
         """Loads a scenario.
 
@@ -49,6 +68,7 @@ class Experiment:
             overrides: Changes of single values, each `part.key=value` with the value in TOML and the part one
                 of `scenario`, `vehicle`, `controller`.
             substeps: Steps of the plant in each second, 1 to 1000.
+            vehicle: Name or path of a vehicle; that of the scenario where absent.
         """
 
     @property
@@ -57,6 +77,21 @@ class Experiment:
     @property
     def vehicle(self) -> str:
         """Name of the vehicle."""
+    @property
+    def architecture(self) -> str:
+        """Name or path of the vehicle's architecture."""
+    @property
+    def signal_names(self) -> tuple[str, ...]:
+        """Names of all signals."""
+    @property
+    def actuator_names(self) -> tuple[str, ...]:
+        """Names of all actuators, in the order of a command."""
+    def actuators(self) -> _Actuators:
+        """Name, unit, options (empty for levels) and description of every actuator."""
+    def signals(self) -> _Signals:
+        """Name, unit and description of every signal."""
+    def layout(self) -> dict[str, Any]:
+        """What the vehicle is made of, by the names of columns and actuators."""
     @property
     def cycle(self) -> str:
         """Name of the drive cycle."""
@@ -116,8 +151,14 @@ class Episode:
         """Whether it was closed."""
     def option_counts(self) -> list[int]:
         """Number of options of each action; empty in continuous mode."""
-    def observation_rows(self) -> list[tuple[str, str, float, float, str]]:
+    def action_rows(self) -> _Actuators:
+        """Name, unit, options (empty for levels) and description of each action."""
+    def observation_rows(self) -> _Observed:
         """Name, unit, low, high and meaning of every row of an observation."""
+    def signal_names(self) -> tuple[str, ...]:
+        """Names of all signals of the vehicle of the trip."""
+    def layout(self) -> dict[str, Any]:
+        """What the vehicle of the trip is made of."""
     def seed(self, seed: int) -> None:
         """Starts the random numbers anew."""
     def reset(self, scenario: str | None = None, distribution: str | None = None) -> tuple[_Floats, _Info]:
@@ -146,6 +187,49 @@ class Episode:
         """Ends it."""
 
 @final
+class FinishedTrip:
+    """A trip that is over."""
+
+    @property
+    def index(self) -> int:
+        """Environment."""
+    @property
+    def info(self) -> _Info:
+        """Parts of its last reward; reason of its end and KPIs, unless it was cut off."""
+    @property
+    def last_observation(self) -> _Floats | None:
+        """Its last observation, where the environment was reset at once."""
+
+@final
+class Outcomes:
+    """What a step of many environments gives: columns with one entry for each, then what happened to some."""
+
+    @property
+    def observations(self) -> _Floats:
+        """Observations, one row an environment."""
+    @property
+    def rewards(self) -> NDArray[np.float64]:
+        """Rewards."""
+    @property
+    def terminated(self) -> _Bools:
+        """Whose trip ended."""
+    @property
+    def truncated(self) -> _Bools:
+        """Whose trip was cut off."""
+    @property
+    def parts(self) -> NDArray[np.float64]:
+        """Parts of the rewards, one row a part."""
+    @property
+    def finished(self) -> list[FinishedTrip]:
+        """Trips that are over."""
+    @property
+    def reset(self) -> list[int]:
+        """Environments that were reset."""
+    @property
+    def trips(self) -> _Info:
+        """What is told of their trips: a list or array by name."""
+
+@final
 class Vector:
     """Many environments."""
 
@@ -154,6 +238,7 @@ class Vector:
         settings: str,
         scenarios: Sequence[str | None],
         distributions: Sequence[str | None],
+        vehicles: Sequence[str | None],
         autoreset: str,
         step_limit: int | None,
         threads: int,
@@ -172,23 +257,22 @@ class Vector:
         """
     def observe(self, indices: Sequence[int]) -> _Floats:
         """Observations of environments, one row each."""
-    def step(
-        self, action: NDArray[Any]
-    ) -> tuple[
-        _Floats,
-        NDArray[np.float64],
-        _Bools,
-        _Bools,
-        NDArray[np.float64],
-        list[tuple[int, _Info, _Floats | None]],
-        list[int],
-        _Info,
-    ]:
+    def step(self, action: NDArray[Any]) -> Outcomes:
         """Drives all environments on for one control interval."""
     def action_masks(self) -> _Bools:
         """Options that would be granted in the coming second, one row an environment."""
     def rule_based_actions(self) -> NDArray[Any]:
         """What the rule-based controllers would do next, one row an environment."""
+    def option_counts(self) -> list[int]:
+        """Number of options of each action; empty in continuous mode."""
+    def action_rows(self) -> _Actuators:
+        """Name, unit, options (empty for levels) and description of each action."""
+    def observation_rows(self) -> _Observed:
+        """Name, unit, low, high and meaning of every row of an observation."""
+    def signal_names(self, index: int) -> tuple[str, ...]:
+        """Names of all signals of the vehicle of an environment's trip."""
+    def layout(self, index: int) -> dict[str, Any]:
+        """What the vehicle of an environment's trip is made of."""
     def look(self, index: int) -> NDArray[np.float64]:
         """Present values of all signals of an environment."""
     def speeds_m_s(self, index: int) -> NDArray[np.float64]:
@@ -212,20 +296,54 @@ def observation_table() -> list[tuple[tuple[str, str, float, float, str], bool]]
 def reward_parts() -> list[str]:
     """Names of the parts of a reward."""
 
-def totals(scenarios: Sequence[str], overrides: Sequence[str] = ...) -> list[tuple[dict[str, float], str]]:
+def action_groups() -> list[tuple[str, list[str]]]:
+    """Groups of actuators (`default`, `hpcu`, `all`), and the names of those of the default architecture."""
+
+def default_settings() -> str:
+    """Default settings of an environment as JSON."""
+
+def architecture_layout(name: str) -> dict[str, Any]:
+    """Reads and checks an architecture by name or path; returns what it is made of.
+
+    Raises:
+        ConfigurationError: It has a flaw.
+    """
+
+def vehicle_layout(name: str, overrides: Sequence[str] = ...) -> dict[str, Any]:
+    """Reads and checks a vehicle by name or path; returns what it is made of.
+
+    Raises:
+        ConfigurationError: It, its architecture or an override has a flaw.
+    """
+
+def totals(
+    scenarios: Sequence[str], overrides: Sequence[str] = ..., vehicle: str | None = None
+) -> list[tuple[dict[str, float], str]]:
     """Totals of several scenarios with the same overrides, run side by side."""
 
-def plant_step_seconds(scenario: str, seed: int | None = None) -> tuple[float, int]:
+def plant_step_seconds(
+    scenario: str, seed: int | None = None, vehicle: str | None = None
+) -> tuple[float, int]:
     """Seconds of all steps with the compressor on, and their number; random actions with a seed."""
 
-def signals() -> list[tuple[str, str, str]]:
-    """Name, unit and description of every signal, in the order of a row."""
+def signals(name: str = ...) -> _Signals:
+    """Name, unit and description of every signal of an architecture, in the order of a row."""
 
-def actuators() -> list[tuple[str, str, list[str], str]]:
-    """Name, unit, options (empty for levels) and description of every actuator."""
+def actuators(name: str = ...) -> _Actuators:
+    """Name, unit, options (empty for levels) and description of every actuator of an architecture."""
 
 def names(kind_word: str) -> list[str]:
-    """Names of the compiled-in files of a kind: `scenario`, `vehicle`, `controller`, `drive cycle`, ..."""
+    """Names of the compiled-in files of a kind: `scenario`, `vehicle`, `architecture`, `drive cycle`, ..."""
 
 def config_text(kind_word: str, name: str) -> str:
     """Text of a configuration file by name or path."""
+
+def reference_policy_names() -> list[str]:
+    """Names of the reference policies: their files in `agents/reference_policies` without ending, sorted."""
+
+def reference_policy(name: str) -> bytes:
+    """Bytes of the file of a reference policy.
+
+    Raises:
+        ConfigurationError: There is none of this name.
+    """

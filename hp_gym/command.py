@@ -9,9 +9,7 @@ from numpy.typing import NDArray
 from hp_gym import _core
 
 ACTUATORS: Final[tuple[str, ...]] = tuple(name for name, _, _, _ in _core.actuators())
-"""Names of all actuators in the order of a command."""
-
-_ROWS: Final = {name: row for row, name in enumerate(ACTUATORS)}
+"""Names of all actuators of the default architecture in the order of a command."""
 
 
 def encode(
@@ -24,7 +22,7 @@ def encode(
     Args:
         experiment: What is run; the ranges of some actuators are those of its vehicle.
         settings: A physical value for a level (`{"compressor_power": 800.0}`, 0 is off) and an option for a
-            choice (`{"cabin": "htc", "ptc": "off"}`). `hp_gym._core.actuators()` lists them all.
+            choice (`{"cabin": "htc", "ptc": "off"}`). `experiment.actuators()` lists them all.
         base: Command whose other values are kept, for example `run.rule_based_command()`. Without it,
             everything that is not set is isolated or off, with valves open and heat requests unlimited.
 
@@ -42,6 +40,6 @@ def encode(
         message = f"base has the shape {np.shape(base)}, but a command has the shape {encoded.shape}"
         raise ValueError(message)
     command = np.array(base, dtype=np.float32)
-    rows = [_ROWS[name] for name in settings]
+    rows = [experiment.actuator_names.index(name) for name in settings]
     command[rows] = encoded[rows]
     return command

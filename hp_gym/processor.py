@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -55,4 +56,10 @@ def _found() -> Mapping[str, bool]:
     return features
 
 
-check()
+try:
+    check()
+except ImportError as error:
+    # The command's own script imports this package before any of its code could catch this.
+    if Path(*sys.argv[:1]).stem == "hp-gym":
+        sys.exit(f"hp-gym: {error}")
+    raise

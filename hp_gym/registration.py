@@ -12,6 +12,6 @@ def register_envs() -> None:
     if ENV_ID not in registry:
         register(
             id=ENV_ID,
-            entry_point="hp_gym.env:EVHeatPumpEnv",
-            vector_entry_point="hp_gym.vector_env:EVHeatPumpVectorEnv",
+            entry_point="hp_gym.envs.env:EVHeatPumpEnv",
+            vector_entry_point="hp_gym.envs.vector_env:EVHeatPumpVectorEnv",
         )

@@ -7,6 +7,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from hp_gym import native
 from hp_gym._core import Experiment, Run
 from hp_gym.overrides import Overrides, assignments
 from hp_gym.trajectory import Trajectory
@@ -25,6 +26,7 @@ def simulate(
     controller: str | os.PathLike[str] | Controller | None = None,
     overrides: Overrides | None = None,
     *,
+    vehicle: str | os.PathLike[str] | None = None,
     substeps: int = 1,
 ) -> Trajectory:
     """Drives a scenario to its end.
@@ -35,6 +37,7 @@ def simulate(
             second (see `Controller`); by default the scenario's own heat pump control unit.
         overrides: Configuration values to change, by dotted key that begins with `scenario.`, `vehicle.` or
             `controller.`, for example `{"scenario.climate.ambient_temperature_degc": -7.0}`.
+        vehicle: Name or path of a vehicle; that of the scenario by default.
         substeps: Steps of the plant in each second; controllers stay at one second.
 
     Returns:
@@ -46,14 +49,15 @@ def simulate(
     """
     scenario = os.fspath(scenario)
     changes = assignments(overrides)
+    car = None if vehicle is None else os.fspath(vehicle)
     if callable(controller):
-        experiment = Experiment(scenario, None, changes, substeps)
+        experiment = Experiment(scenario, None, changes, substeps, car)
         values, summary, end_reason = _drive(experiment, controller)
         name = getattr(controller, "__name__", type(controller).__name__)
     else:
         chosen = None if controller is None else os.fspath(controller)
-        experiment = Experiment(scenario, chosen, changes, substeps)
-        values, summary, end_reason = experiment.simulate()
+        experiment = Experiment(scenario, chosen, changes, substeps, car)
+        values, summary, end_reason = native.simulate(experiment, substeps)
         name = chosen or experiment.controller
     return Trajectory(
         scenario=scenario,
@@ -62,6 +66,8 @@ def simulate(
         summary=summary,
         limits=experiment.limits(),
         values=values,
+        signals=tuple(experiment.signals()),
+        layout=experiment.layout(),
     )
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from hp_gym.policies import HpcuPolicy
+from hp_gym.envs.hpcu_policy import HpcuPolicy
 
 FRAMES_PER_S: Final = 10
 QUALITY: Final = 40

@@ -11,9 +11,9 @@ from typing import Any
 import gymnasium as gym
 
 import hp_gym
-from agents.training.trips import drive
-from hp_gym.policies import HpcuPolicy
-from hp_gym.vector_env import EVHeatPumpVectorEnv
+from hp_gym.agents.training.trips import drive
+from hp_gym.envs.hpcu_policy import HpcuPolicy
+from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
 
 TRIPS = 400
 FIRST_SEED = 3_000_000

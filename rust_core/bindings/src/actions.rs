@@ -1,8 +1,9 @@
 //! Actions from NumPy arrays, checked: type, shape, range.
 
 use hp_episode::action;
+use hp_episode::rows::ActionRow;
 use hp_episode::setup::Setup;
-use hp_plant::command::{ACTUATORS, Scale};
+use hp_plant::command::Scale;
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
@@ -22,7 +23,7 @@ pub fn read<'py>(action: &Bound<'py, PyAny>, setup: &Setup, count: Option<usize>
         let array = typed::<f32>(action, "f", "float32", "floating point")?;
         let allowed = |_: usize, value: f32| (-1.0..=1.0).contains(&value);
         let values = checked(&array, setup, count, allowed, |row, value| {
-            (f64::from(value), format!("between -1 and 1 ({})", ACTUATORS[row].description))
+            (f64::from(value), format!("between -1 and 1 ({})", row.description))
         });
         values.map(|()| Checked::Values(array))
     } else {
@@ -30,8 +31,8 @@ pub fn read<'py>(action: &Bound<'py, PyAny>, setup: &Setup, count: Option<usize>
         let options = setup.actions.option_counts();
         let allowed = |column: usize, level: i64| (level as u64) < options[column] as u64;
         let levels = checked(&array, setup, count, allowed, |row, level| {
-            let options = action::options(row);
-            let names = match ACTUATORS[row].scale {
+            let options = action::options(&row.scale);
+            let names = match &row.scale {
                 Scale::Choice(names) => format!(" ({})", names.join(", ")),
                 Scale::Linear | Scale::OffThenLogarithmic => String::new(),
             };
@@ -71,7 +72,7 @@ fn checked<T: numpy::Element + Copy>(
     setup: &Setup,
     count: Option<usize>,
     allowed: impl Fn(usize, T) -> bool,
-    refuse: impl Fn(usize, T) -> (f64, String),
+    refuse: impl Fn(&ActionRow, T) -> (f64, String),
 ) -> PyResult<()> {
     let rows = setup.actions.rows();
     let shape = array.shape();
@@ -84,7 +85,7 @@ fn checked<T: numpy::Element + Copy>(
             None => format!("({},)", rows.len()),
             Some(count) => format!("({count}, {})", rows.len()),
         };
-        let names: Vec<&str> = rows.iter().map(|&row| ACTUATORS[row].name).collect();
+        let names: Vec<&str> = rows.iter().map(|row| row.name.as_str()).collect();
         let message =
             format!("action has the shape {shape:?}, but must have {allowed}: {}", names.join(", "));
         return Err(PyValueError::new_err(message));
@@ -93,12 +94,12 @@ fn checked<T: numpy::Element + Copy>(
     let values = array.as_slice()?;
     let fits = |row: &[T]| (0..width).fold(true, |fits, column| fits & allowed(column, row[column]));
     let Some(index) = values.chunks_exact(width).position(|row| !fits(row)) else { return Ok(()) };
-    for (column, &row) in rows.iter().enumerate() {
+    for (column, row) in rows.iter().enumerate() {
         let value = values[index * width + column];
         if !allowed(column, value) {
             let (value, allowed) = refuse(row, value);
             let position = if count.is_some() { format!("{index}, {column}") } else { column.to_string() };
-            let name = ACTUATORS[row].name;
+            let name = &row.name;
             let message = format!("action[{position}] ({name}) is {value}, but must be {allowed}");
             return Err(PyValueError::new_err(message));
         }

@@ -2,50 +2,47 @@
 
 use crate::actions::{self, Checked};
 use crate::errors::{ConfigurationError, gymnasium_error, to_python};
-use hp_episode::action;
-use hp_episode::episode;
+use crate::vehicles::{ActuatorTuple, DEFAULT_ARCHITECTURE, SignalNames, action_tuple, layout_dict};
+use hp_episode::action::{ActionTable, GROUPS};
+use hp_episode::episode::{self, Clock};
+use hp_episode::observation::Observed;
 use hp_episode::reward::{PART_NAMES, Parts, RewardParameters, Terms};
-use hp_episode::setup::{Settings, Setup, Source};
-use hp_plant::command::{ACTUATOR_COUNT, ACTUATORS, Command};
-use hp_plant::signals::{self, View};
+use hp_episode::rows::RowSet;
+use hp_episode::setup::{Origin, Settings, Setup, Source};
+use hp_plant::config::vehicle::architecture;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{PyBytes, PyDict, PyString, PyTuple};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Settings from JSON, made ready.
-pub fn setup(settings: &str) -> PyResult<Arc<Setup>> {
+/// Settings from JSON, made ready for environments whose trips come from these origins, with the source of each.
+pub fn setup(settings: &str, origins: &[Origin]) -> PyResult<(Arc<Setup>, Vec<Source>)> {
     let read = &mut serde_json::Deserializer::from_str(settings);
     let settings: Settings = serde_path_to_error::deserialize(read).map_err(|error| {
         let key = error.path().to_string();
         ConfigurationError::new_err(format!("setting `{key}`: {}", error.into_inner()))
     })?;
-    Ok(Arc::new(Setup::new(&settings).map_err(to_python)?))
+    Setup::new(&settings, origins).map_err(to_python)
 }
 
-/// Where trips come from: a scenario, or else a distribution.
-pub fn source(setup: &Setup, scenario: Option<&str>, distribution: Option<&str>) -> PyResult<Option<Source>> {
-    let source = match (scenario, distribution) {
-        (Some(name), _) => Some(setup.scenario(name)),
-        (None, Some(name)) => Some(setup.distribution(name)),
-        (None, None) => None,
-    };
-    source.transpose().map_err(to_python)
+/// Source of trips of one reset; none where it names no scenario and no distribution.
+pub fn once(setup: &Setup, origin: Origin) -> PyResult<Option<Source>> {
+    if origin.scenario.is_none() && origin.distribution.is_none() {
+        return Ok(None);
+    }
+    setup.source(&origin).map(Some).map_err(to_python)
 }
 
 /// Present values of all signals.
 pub fn looked(episode: &episode::Episode) -> Vec<f64> {
-    let (Some((_, experiment)), Some(run)) = (episode.trip(), episode.run()) else { return Vec::new() };
-    let disturbance = experiment.disturbance(run.steps.saturating_sub(1));
-    let view = View {
-        plant: &experiment.plant,
-        state: &run.state,
-        record: run.record.as_ref(),
-        disturbance: &disturbance,
-    };
-    signals::all().map(|signal| signal.read(&view)).collect()
+    let mut row = Vec::new();
+    if let (Some((_, experiment)), Some(run)) = (episode.trip(), episode.run()) {
+        experiment.look(run, &mut row);
+    }
+    row
 }
 
 /// Speed at every full second of a trip.
@@ -58,6 +55,7 @@ pub fn trip_info<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<B
     let info = PyDict::new(py);
     if let Some((origin, experiment)) = episode.trip() {
         info.set_item(intern!(py, "scenario"), origin)?;
+        info.set_item(intern!(py, "vehicle"), &experiment.scenario.vehicle)?;
         info.set_item(intern!(py, "cycle"), experiment.cycle.name())?;
         info.set_item(intern!(py, "trip_s"), experiment.cycle.duration_s())?;
         let ambient_degc = experiment.climate.ambient_temperature_degc.0;
@@ -69,10 +67,9 @@ pub fn trip_info<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<B
 /// Parts of a reward by name.
 pub fn parts_info<'py>(py: Python<'py>, parts: &Parts) -> PyResult<Bound<'py, PyDict>> {
     let info = PyDict::new(py);
-    info.set_item(intern!(py, "reward_energy"), parts[0])?;
-    info.set_item(intern!(py, "reward_discomfort"), parts[1])?;
-    info.set_item(intern!(py, "reward_heat_left"), parts[2])?;
-    info.set_item(intern!(py, "reward_penalties"), parts[3])?;
+    for (name, part) in PART_NAMES.iter().zip(parts) {
+        info.set_item(PyString::intern(py, name), part)?;
+    }
     Ok(info)
 }
 
@@ -88,32 +85,24 @@ pub fn kpis<'py>(py: Python<'py>, terms: &Terms, weights: &RewardParameters) -> 
 /// Totals of a trip by name.
 pub fn summary<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    if let Some(run) = episode.run() {
-        for (name, value) in run.summary.values() {
+    if let (Some(run), Some((_, experiment))) = (episode.run(), episode.trip()) {
+        for (name, value) in run.summary.values(experiment.plant.layout()) {
             dict.set_item(name, value)?;
         }
     }
     Ok(dict)
 }
 
-/// A command as an action of an environment: nearest options, or values.
-fn as_action<'py>(py: Python<'py>, setup: &Setup, command: &Command) -> Bound<'py, PyAny> {
-    let rows = setup.actions.rows();
-    if setup.continuous {
-        let values: Vec<f32> = rows.iter().map(|&row| command.0[row]).collect();
-        values.into_pyarray(py).into_any()
-    } else {
-        let options: Vec<i64> =
-            rows.iter().map(|&row| action::nearest_option(row, command.0[row]) as i64).collect();
-        options.into_pyarray(py).into_any()
-    }
-}
-
 /// What a step gives: observation, reward, terminated, truncated, info.
 type Step<'py> = (Bound<'py, PyArray1<f32>>, f64, bool, bool, Bound<'py, PyDict>);
 
 /// Name, unit, low, high and meaning of a row of an observation.
-type ObservedRow = (String, &'static str, f64, f64, String);
+pub type ObservedRow = (String, &'static str, f64, f64, String);
+
+/// A row as Python gets it.
+pub fn observed_row(row: &Observed) -> ObservedRow {
+    (row.name.clone(), row.unit, row.low, row.high, row.description.clone())
+}
 
 /// One environment.
 #[pyclass(module = "hp_gym._core")]
@@ -123,6 +112,7 @@ pub struct Episode {
     distribution: Option<String>,
     inner: episode::Episode,
     observation: Vec<f32>,
+    names: SignalNames,
     closed: bool,
 }
 
@@ -157,13 +147,21 @@ impl Episode {
     #[new]
     #[pyo3(signature = (settings, scenario=None, distribution=None))]
     fn new(settings: String, scenario: Option<String>, distribution: Option<String>) -> PyResult<Self> {
-        let setup = setup(&settings)?;
-        let source = source(&setup, scenario.as_deref(), distribution.as_deref())?.ok_or_else(|| {
-            PyValueError::new_err("scenario and distribution are None, but one must be given")
-        })?;
+        let origin =
+            Origin { scenario: scenario.clone(), distribution: distribution.clone(), ..Origin::default() };
+        let (setup, mut sources) = setup(&settings, &[origin])?;
+        let source = sources.remove(0);
         let observation = vec![0.0; setup.observations.rows().len()];
         let inner = episode::Episode::new(setup, source);
-        Ok(Self { settings, scenario, distribution, inner, observation, closed: false })
+        Ok(Self {
+            settings,
+            scenario,
+            distribution,
+            inner,
+            observation,
+            names: SignalNames::default(),
+            closed: false,
+        })
     }
 
     /// Number of options of each action; empty in continuous mode.
@@ -175,9 +173,13 @@ impl Episode {
         }
     }
 
+    /// Name, unit, options (empty for levels) and description of each action.
+    fn action_rows(&self) -> Vec<ActuatorTuple> {
+        self.inner.setup().actions.rows().iter().map(action_tuple).collect()
+    }
+
     fn observation_rows(&self) -> Vec<ObservedRow> {
-        let rows = self.inner.setup().observations.rows().iter();
-        rows.map(|row| (row.name.clone(), row.unit, row.low, row.high, row.description.clone())).collect()
+        self.inner.setup().observations.rows().iter().map(observed_row).collect()
     }
 
     fn seed(&mut self, seed: u64) {
@@ -188,11 +190,11 @@ impl Episode {
     fn reset<'py>(
         &mut self,
         py: Python<'py>,
-        scenario: Option<&str>,
-        distribution: Option<&str>,
+        scenario: Option<String>,
+        distribution: Option<String>,
     ) -> PyResult<(Bound<'py, PyArray1<f32>>, Bound<'py, PyDict>)> {
         self.require_open(py)?;
-        let once = source(self.inner.setup(), scenario, distribution)?;
+        let once = once(self.inner.setup(), Origin { scenario, distribution, ..Origin::default() })?;
         self.inner.reset(once.as_ref()).map_err(to_python)?;
         Ok((self.observed(py), trip_info(py, &self.inner)?))
     }
@@ -203,19 +205,17 @@ impl Episode {
             let message = format!("this trip has ended ({}); call reset()", end.name());
             return Err(gymnasium_error(py, "ResetNeeded", &message));
         }
-        let mut values = [0.0; ACTUATOR_COUNT];
         let setup = self.inner.setup();
-        let rows = setup.actions.rows();
-        match actions::read(action, setup, None)? {
-            Checked::Values(array) => values[..rows.len()].copy_from_slice(array.as_slice()?),
+        let outcome = match actions::read(action, setup, None)? {
+            Checked::Values(array) => self.inner.step(array.as_slice()?),
             Checked::Levels(array) => {
-                for (column, &level) in array.as_slice()?.iter().enumerate() {
-                    values[column] = setup.actions.value(column, level as usize);
-                }
+                let levels = array.as_slice()?.iter().enumerate();
+                let values: Vec<f32> =
+                    levels.map(|(column, &level)| setup.actions.value(column, level as usize)).collect();
+                self.inner.step(&values)
             }
-        }
-        let width = rows.len();
-        let Some(outcome) = self.inner.step(&values[..width]) else {
+        };
+        let Some(outcome) = outcome else {
             return Err(gymnasium_error(py, "ResetNeeded", "call reset() first"));
         };
         let info = parts_info(py, &outcome.parts)?;
@@ -235,9 +235,16 @@ impl Episode {
 
     fn rule_based_action<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.require_begun(py)?;
-        let command = self.inner.rule_based_command();
-        let command = command.ok_or_else(|| gymnasium_error(py, "ResetNeeded", "call reset() first"))?;
-        Ok(as_action(py, self.inner.setup(), &command))
+        let width = self.inner.setup().actions.rows().len();
+        if self.inner.setup().continuous {
+            let mut values = vec![0.0; width];
+            self.inner.rule_based_values(&mut values);
+            Ok(values.into_pyarray(py).into_any())
+        } else {
+            let mut levels = vec![0; width];
+            self.inner.rule_based_levels(&mut levels);
+            Ok(levels.into_pyarray(py).into_any())
+        }
     }
 
     /// Present values of all signals.
@@ -246,10 +253,22 @@ impl Episode {
         Ok(looked(&self.inner).into_pyarray(py))
     }
 
+    /// Names of all signals of the vehicle of the trip.
+    fn signal_names<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        self.require_begun(py)?;
+        self.names.of(py, &self.inner)
+    }
+
+    /// What the vehicle of the trip is made of.
+    fn layout<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.require_begun(py)?;
+        layout_dict(py, self.inner.trip().map(|(_, experiment)| &experiment.plant.vehicle))
+    }
+
     /// The command that was driven last, all actuators.
     fn asked<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
         self.require_begun(py)?;
-        Ok(self.inner.asked().map_or_else(Vec::new, |asked| asked.to_vec()).into_pyarray(py))
+        Ok(self.inner.asked().map_or_else(Vec::new, <[f32]>::to_vec).into_pyarray(py))
     }
 
     /// Speed at every full second of the trip.
@@ -271,12 +290,13 @@ impl Episode {
     }
 
     fn get_state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        Ok(PyBytes::new(py, &self.inner.to_bytes().map_err(to_python)?))
+        Ok(PyBytes::new(py, &self.inner.to_bytes(Clock::default()).map_err(to_python)?))
     }
 
     fn set_state(&mut self, py: Python<'_>, state: &[u8]) -> PyResult<()> {
         self.require_open(py)?;
-        self.inner.restore(state).map_err(to_python)
+        self.inner.resume(self.inner.read(state).map_err(to_python)?);
+        Ok(())
     }
 
     fn close(&mut self) {
@@ -300,20 +320,43 @@ impl Episode {
     }
 
     fn __setstate__(&mut self, state: (Vec<u8>, bool)) -> PyResult<()> {
-        self.inner.restore(&state.0).map_err(to_python)?;
+        self.inner.resume(self.inner.read(&state.0).map_err(to_python)?);
         self.closed = state.1;
         Ok(())
     }
 }
 
+/// Rows of the default architecture.
+fn default_rows() -> PyResult<RowSet> {
+    let layout = architecture(DEFAULT_ARCHITECTURE).map_err(to_python)?;
+    RowSet::of([&layout]).map_err(to_python)
+}
+
+/// Groups of actuators, and the names of those of the default architecture.
+#[pyfunction]
+pub fn action_groups() -> PyResult<Vec<(&'static str, Vec<String>)>> {
+    let set = default_rows()?;
+    let group = |name: &'static str| {
+        let actions = ActionTable::new(&[name.to_owned()], &set, &BTreeMap::new()).map_err(to_python)?;
+        Ok((name, actions.rows().iter().map(|row| row.name.clone()).collect()))
+    };
+    GROUPS.into_iter().map(group).collect()
+}
+
+/// Default settings of an environment as JSON.
+#[pyfunction]
+pub fn default_settings() -> PyResult<String> {
+    serde_json::to_string(&Settings::default()).map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
 /// Every row that can be observed with the default actions, and whether it is by default.
 #[pyfunction]
 pub fn observation_table() -> PyResult<Vec<(ObservedRow, bool)>> {
-    let names: Vec<String> =
-        ACTUATORS[..action::DEFAULT_ROWS].iter().map(|actuator| actuator.name.to_owned()).collect();
-    let actions = action::ActionTable::new(&names).map_err(to_python)?;
-    let rows = hp_episode::observation::all(&actions).into_iter();
-    Ok(rows.map(|row| ((row.name, row.unit, row.low, row.high, row.description), row.default)).collect())
+    let set = default_rows()?;
+    let names = [GROUPS[0].to_owned()];
+    let actions = ActionTable::new(&names, &set, &BTreeMap::new()).map_err(to_python)?;
+    let rows = hp_episode::observation::all(&set, &actions).into_iter();
+    Ok(rows.map(|row| (observed_row(&row), row.default)).collect())
 }
 
 /// Names of the parts of a reward.

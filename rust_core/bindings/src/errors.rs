@@ -12,9 +12,19 @@ create_exception!(
     "A file, name or value that the plant does not accept."
 );
 
+create_exception!(
+    _core,
+    StateError,
+    ConfigurationError,
+    "A saved state that is damaged, or of something else."
+);
+
 /// Python exception for an error of the plant.
 pub fn to_python(error: PlantError) -> PyErr {
-    ConfigurationError::new_err(error.to_string())
+    match error {
+        PlantError::State { .. } => StateError::new_err(error.to_string()),
+        _ => ConfigurationError::new_err(error.to_string()),
+    }
 }
 
 /// An exception of `gymnasium.error` by name.

@@ -1,15 +1,16 @@
 //! Scenarios and runs.
 
 use crate::errors::to_python;
+use crate::vehicles::{ActuatorTuple, SignalTuple, actuator_tuple, layout_dict, signal_tuple};
 use hp_episode::timing;
-use hp_plant::command::{ACTUATOR_COUNT, Command, Demand};
+use hp_plant::architecture::layout::Layout;
+use hp_plant::command::Command;
 use hp_plant::config::library::Override;
-use hp_plant::signals;
 use hp_trip::{experiment, run, summary};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -23,9 +24,13 @@ fn parse_overrides(overrides: &[String]) -> PyResult<Vec<Override>> {
     overrides.iter().map(|text| Override::parse(text).map_err(to_python)).collect()
 }
 
-fn to_dict<'py>(py: Python<'py>, summary: &summary::Summary) -> PyResult<Bound<'py, PyDict>> {
+fn to_dict<'py>(
+    py: Python<'py>,
+    summary: &summary::Summary,
+    layout: &Layout,
+) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    for (name, value) in summary.values() {
+    for (name, value) in summary.values(layout) {
         dict.set_item(name, value)?;
     }
     Ok(dict)
@@ -35,27 +40,36 @@ fn to_dict<'py>(py: Python<'py>, summary: &summary::Summary) -> PyResult<Bound<'
 #[pyclass(frozen, module = "hp_gym._core")]
 pub struct Experiment {
     inner: experiment::Experiment,
+    signal_names: Py<PyTuple>,
+    actuator_names: Py<PyTuple>,
 }
 
 #[pymethods]
 impl Experiment {
     #[new]
-    #[pyo3(signature = (scenario, controller=None, overrides=Vec::new(), substeps=1))]
+    #[pyo3(signature = (scenario, controller=None, overrides=Vec::new(), substeps=1, vehicle=None))]
     fn new(
+        py: Python<'_>,
         scenario: &str,
         controller: Option<&str>,
         overrides: Vec<String>,
         substeps: u32,
+        vehicle: Option<&str>,
     ) -> PyResult<Self> {
         let overrides = parse_overrides(&overrides)?;
-        let mut inner = experiment::Experiment::load(scenario, controller, &overrides).map_err(to_python)?;
+        let mut inner = experiment::Experiment::with_vehicle(scenario, vehicle, controller, &overrides)
+            .map_err(to_python)?;
         if !(1..=1000).contains(&substeps) {
             return Err(PyValueError::new_err(format!(
                 "substeps is {substeps}, but must be between 1 and 1000"
             )));
         }
         inner = inner.with_substeps(substeps);
-        Ok(Self { inner })
+        let signals = inner.plant.signals.rows().iter();
+        let signal_names = PyTuple::new(py, signals.map(|signal| &signal.name))?.unbind();
+        let actuators = inner.plant.ranges.rows().iter();
+        let actuator_names = PyTuple::new(py, actuators.map(|row| &row.name))?.unbind();
+        Ok(Self { inner, signal_names, actuator_names })
     }
 
     #[getter]
@@ -93,9 +107,42 @@ impl Experiment {
         self.inner.cycle.distance_m()
     }
 
+    /// Name or path of the vehicle's architecture.
+    #[getter]
+    fn architecture(&self) -> &str {
+        &self.inner.plant.vehicle.architecture
+    }
+
+    /// Name, unit, options (empty for levels) and description of every actuator.
+    fn actuators(&self) -> Vec<ActuatorTuple> {
+        self.inner.plant.ranges.rows().iter().map(actuator_tuple).collect()
+    }
+
+    /// Name, unit and description of every signal.
+    fn signals(&self) -> Vec<SignalTuple> {
+        self.inner.plant.signals.rows().iter().map(signal_tuple).collect()
+    }
+
+    /// Names of all signals.
+    #[getter]
+    fn signal_names(&self, py: Python<'_>) -> Py<PyTuple> {
+        self.signal_names.clone_ref(py)
+    }
+
+    /// Names of all actuators, in the order of a command.
+    #[getter]
+    fn actuator_names(&self, py: Python<'_>) -> Py<PyTuple> {
+        self.actuator_names.clone_ref(py)
+    }
+
+    /// What the vehicle is made of.
+    fn layout<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        layout_dict(py, Some(&self.inner.plant.vehicle))
+    }
+
     /// Lowest and highest physical value of every actuator.
     fn actuator_ranges(&self) -> Vec<(f64, f64)> {
-        (0..ACTUATOR_COUNT).map(|row| self.inner.plant.ranges.range(row)).collect()
+        (0..self.inner.plant.ranges.count()).map(|row| self.inner.plant.ranges.range(row)).collect()
     }
 
     /// Limits that a run is judged by.
@@ -114,7 +161,7 @@ impl Experiment {
         settings: BTreeMap<String, Setting>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let ranges = &self.inner.plant.ranges;
-        let mut command = ranges.encode(&Demand::default());
+        let mut command = ranges.encode(&ranges.idle());
         for (name, setting) in settings {
             match setting {
                 Setting::Option(option) => ranges.choose(&mut command, &name, &option),
@@ -122,19 +169,19 @@ impl Experiment {
             }
             .map_err(to_python)?;
         }
-        Ok(command.0.to_vec().into_pyarray(py))
+        Ok(command.0[..ranges.count()].to_vec().into_pyarray(py))
     }
 
     fn simulate<'py>(&self, py: Python<'py>) -> PyResult<Trajectory<'py>> {
         let trajectory = py.detach(|| self.inner.simulate());
         let rows = trajectory.values.len() / trajectory.columns;
         let values = trajectory.values.into_pyarray(py).reshape([rows, trajectory.columns])?;
-        Ok((values, to_dict(py, &trajectory.summary)?, trajectory.end.name()))
+        Ok((values, to_dict(py, &trajectory.summary, self.inner.plant.layout())?, trajectory.end.name()))
     }
 
     fn totals<'py>(&self, py: Python<'py>) -> PyResult<Totals<'py>> {
         let (summary, end) = py.detach(|| self.inner.totals());
-        Ok((to_dict(py, &summary)?, end.name()))
+        Ok((to_dict(py, &summary, self.inner.plant.layout())?, end.name()))
     }
 
     fn start(slf: Py<Self>, py: Python<'_>) -> Run {
@@ -166,30 +213,31 @@ impl Run {
     }
 
     fn rule_based_command<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
-        let command = self.experiment.borrow(py).inner.rule_based_command(&mut self.inner);
-        command.0.to_vec().into_pyarray(py)
+        let experiment = &self.experiment.borrow(py).inner;
+        let command = experiment.rule_based_command(&mut self.inner);
+        command.0[..experiment.plant.ranges.count()].to_vec().into_pyarray(py)
     }
 
     fn step(&mut self, py: Python<'_>, command: PyReadonlyArray1<'_, f32>) -> PyResult<Option<&'static str>> {
         if let Some(reason) = self.ended {
             return Err(PyRuntimeError::new_err(format!("this run has ended ({reason}); start another one")));
         }
+        let experiment = self.experiment.borrow(py);
+        let rows = experiment.inner.plant.ranges.rows();
         let values = command.as_slice()?;
-        let command: [f32; ACTUATOR_COUNT] = values.try_into().map_err(|_| {
-            PyValueError::new_err(format!(
-                "command has {} values, but must have {ACTUATOR_COUNT}",
-                values.len()
-            ))
-        })?;
-        if let Some(row) = command.iter().position(|value| !(-1.0..=1.0).contains(value)) {
-            let name = hp_plant::command::ACTUATORS[row].name;
+        if values.len() != rows.len() {
+            let message = format!("command has {} values, but must have {}", values.len(), rows.len());
+            return Err(PyValueError::new_err(message));
+        }
+        if let Some(row) = values.iter().position(|value| !(-1.0..=1.0).contains(value)) {
             return Err(PyValueError::new_err(format!(
-                "command[{row}] ({name}) is {}, but must be between -1 and 1",
-                command[row]
+                "command[{row}] ({}) is {}, but must be between -1 and 1",
+                rows[row].name, values[row]
             )));
         }
-        let experiment = self.experiment.borrow(py);
-        self.ended = experiment.inner.step(&mut self.inner, &Command(command)).map(run::EndReason::name);
+        let mut command = Command::default();
+        command.0[..values.len()].copy_from_slice(values);
+        self.ended = experiment.inner.step(&mut self.inner, &command).map(run::EndReason::name);
         Ok(self.ended)
     }
 
@@ -200,44 +248,48 @@ impl Run {
     }
 
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(py, &self.inner.summary)
+        to_dict(py, &self.inner.summary, self.experiment.borrow(py).inner.plant.layout())
     }
 }
 
 /// Totals of several scenarios with the same overrides, run side by side.
 #[pyfunction]
-#[pyo3(signature = (scenarios, overrides=Vec::new()))]
+#[pyo3(signature = (scenarios, overrides=Vec::new(), vehicle=None))]
 pub fn totals<'py>(
     py: Python<'py>,
     scenarios: Vec<String>,
     overrides: Vec<String>,
+    vehicle: Option<String>,
 ) -> PyResult<Vec<Totals<'py>>> {
     let overrides = parse_overrides(&overrides)?;
     let results: Vec<_> = py.detach(|| {
-        let run = |name: &String| Ok(experiment::Experiment::load(name, None, &overrides)?.totals());
+        let run = |name: &String| {
+            let experiment =
+                experiment::Experiment::with_vehicle(name, vehicle.as_deref(), None, &overrides)?;
+            Ok((experiment.totals(), experiment.plant))
+        };
         scenarios.par_iter().map(run).collect()
     });
     results
         .into_iter()
         .map(|result| {
-            let (summary, end) = result.map_err(to_python)?;
-            Ok((to_dict(py, &summary)?, end.name()))
+            let ((summary, end), plant) = result.map_err(to_python)?;
+            Ok((to_dict(py, &summary, plant.layout())?, end.name()))
         })
         .collect()
 }
 
 /// Seconds that all steps with the compressor on took on a trip, and their number; random actions with a seed.
 #[pyfunction]
-#[pyo3(signature = (scenario, seed=None))]
-pub fn plant_step_seconds(py: Python<'_>, scenario: &str, seed: Option<u64>) -> PyResult<(f64, usize)> {
-    let experiment = experiment::Experiment::load(scenario, None, &[]).map_err(to_python)?;
+#[pyo3(signature = (scenario, seed=None, vehicle=None))]
+pub fn plant_step_seconds(
+    py: Python<'_>,
+    scenario: &str,
+    seed: Option<u64>,
+    vehicle: Option<&str>,
+) -> PyResult<(f64, usize)> {
+    let experiment = experiment::Experiment::with_vehicle(scenario, vehicle, None, &[]).map_err(to_python)?;
     let timed = py.detach(|| timing::compressor_on_steps(&experiment, seed));
     let (spent, steps) = timed.map_err(to_python)?;
     Ok((spent.as_secs_f64(), steps))
-}
-
-/// Name, unit and description of every trajectory column.
-#[pyfunction(name = "signals")]
-pub fn signal_table() -> Vec<(&'static str, &'static str, &'static str)> {
-    signals::all().map(|signal| (signal.name, signal.unit, signal.description)).collect()
 }

@@ -1,11 +1,13 @@
 //! Python bindings: conversions only, no logic.
 
 mod actions;
+mod embedded;
 mod episode;
 mod errors;
 mod experiment;
 mod kinds;
 mod vector;
+mod vehicles;
 
 use pyo3::prelude::*;
 
@@ -20,18 +22,21 @@ const BUILT_FOR: &str = if cfg!(all(target_feature = "avx2", target_feature = "f
 #[pymodule]
 mod _core {
     #[pymodule_export]
-    use super::episode::{Episode, observation_table, reward_parts};
+    use super::embedded::{reference_policy, reference_policy_names};
     #[pymodule_export]
-    use super::errors::ConfigurationError;
+    use super::episode::{Episode, action_groups, default_settings, observation_table, reward_parts};
     use super::errors::to_python;
     #[pymodule_export]
-    use super::experiment::{Experiment, Run, plant_step_seconds, signal_table, totals};
+    use super::errors::{ConfigurationError, StateError};
+    #[pymodule_export]
+    use super::experiment::{Experiment, Run, plant_step_seconds, totals};
     use super::kinds::{BENCHMARK, CALIBRATION, TRAINING};
     #[pymodule_export]
-    use super::vector::Vector;
+    use super::vector::{FinishedTrip, Outcomes, Vector};
+    #[pymodule_export]
+    use super::vehicles::{actuators, architecture_layout, signal_table, vehicle_layout};
     use hp_episode::kinds::{EPISODES, REWARD};
-    use hp_plant::command::{ACTUATORS, Scale};
-    use hp_plant::config::kinds::{REFRIGERANT, VEHICLE};
+    use hp_plant::config::kinds::{ARCHITECTURE, REFRIGERANT, VEHICLE};
     use hp_plant::config::library::{self, Kind};
     use hp_plant::error::PlantError;
     use hp_trip::kinds::{CONTROLLER, CYCLE, SCENARIO};
@@ -39,13 +44,15 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("LEVELS", hp_episode::action::LEVELS)?;
         module.add("__built_for__", super::BUILT_FOR)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 
     /// Every kind of configuration.
-    const KINDS: [Kind; 10] = [
+    const KINDS: [Kind; 11] = [
         VEHICLE,
+        ARCHITECTURE,
         CONTROLLER,
         SCENARIO,
         CYCLE,
@@ -74,20 +81,5 @@ mod _core {
     #[pyfunction]
     fn config_text(kind_word: &str, name: &str) -> PyResult<String> {
         library::text(kind(kind_word)?, name).map_err(to_python)
-    }
-
-    /// Name, unit, options (empty for levels) and description of every actuator.
-    #[pyfunction]
-    fn actuators() -> Vec<(&'static str, &'static str, Vec<&'static str>, &'static str)> {
-        ACTUATORS
-            .iter()
-            .map(|actuator| {
-                let options = match actuator.scale {
-                    Scale::Choice(options) => options.to_vec(),
-                    Scale::Linear | Scale::OffThenLogarithmic => Vec::new(),
-                };
-                (actuator.name, actuator.unit, options, actuator.description)
-            })
-            .collect()
     }
 }

@@ -1,64 +1,68 @@
 //! Many environments that step together, the interpreter's lock released.
 
 use crate::actions::{self, Checked};
-use crate::episode::{kpis, looked, parts_info, setup, source, speeds_m_s, summary};
+use crate::episode::{ObservedRow, kpis, looked, observed_row, once, parts_info, setup, speeds_m_s, summary};
 use crate::errors::{gymnasium_error, to_python};
+use crate::vehicles::{ActuatorTuple, SignalNames, action_tuple, layout_dict};
 use hp_episode::episode::Episode;
-use hp_episode::setup::{Setup, Source};
+use hp_episode::setup::{Origin, Setup, Source};
 use hp_episode::vector::{self, Actions, ActionsMut, Autoreset, PARTS, Results};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{PyBytes, PyDict, PyTuple};
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A name for each environment; none stands for its own.
 type Names = Vec<Option<String>>;
 
-/// A trip that is over: environment, whether it was cut off, info, last observation.
-type Finished<'py> = (usize, Bound<'py, PyDict>, Option<Bound<'py, PyArray1<f32>>>);
+/// A trip that is over.
+#[pyclass(frozen, get_all, module = "hp_gym._core")]
+pub struct FinishedTrip {
+    index: usize,
+    info: Py<PyDict>,
+    last_observation: Option<Py<PyArray1<f32>>>,
+}
 
-/// What a step gives: observations, rewards, terminated, truncated, parts of the rewards, trips that are over,
-/// environments that were reset, what is told of their trips.
-type Step<'py> = (
-    Bound<'py, PyArray2<f32>>,
-    Bound<'py, PyArray1<f64>>,
-    Bound<'py, PyArray1<bool>>,
-    Bound<'py, PyArray1<bool>>,
-    Bound<'py, PyArray2<f64>>,
-    Vec<Finished<'py>>,
-    Vec<usize>,
-    Bound<'py, PyDict>,
-);
+/// What a step gives, a column each with one entry an environment; then what happened to some of them.
+#[pyclass(frozen, get_all, module = "hp_gym._core")]
+pub struct Outcomes {
+    observations: Py<PyArray2<f32>>,
+    rewards: Py<PyArray1<f64>>,
+    terminated: Py<PyArray1<bool>>,
+    truncated: Py<PyArray1<bool>>,
+    parts: Py<PyArray2<f64>>,
+    finished: Vec<Py<FinishedTrip>>,
+    reset: Vec<usize>,
+    trips: Py<PyDict>,
+}
 
 /// Many environments.
 #[pyclass(module = "hp_gym._core")]
 pub struct Vector {
-    arguments: (String, Names, Names, String, Option<u64>, usize),
+    arguments: Arguments,
     setup: Arc<Setup>,
     autoreset: Autoreset,
     inner: vector::Vector,
+    names: SignalNames,
     closed: bool,
 }
 
-/// Sources by name, each loaded once.
-struct Sources<'a> {
-    setup: &'a Setup,
-    loaded: HashMap<(Option<String>, Option<String>), Option<Source>>,
-}
+/// Arguments that a vector was made with: settings, then scenario, distribution and vehicle of each environment, mode of
+/// resets, limit of steps, threads.
+type Arguments = (String, Names, Names, Names, String, Option<u64>, usize);
 
-impl Sources<'_> {
-    fn get(&mut self, scenario: Option<&String>, distribution: Option<&String>) -> PyResult<Option<Source>> {
-        let key = (scenario.cloned(), distribution.cloned());
-        if let Some(source) = self.loaded.get(&key) {
-            return Ok(source.clone());
-        }
-        let source = source(self.setup, key.0.as_deref(), key.1.as_deref())?;
-        self.loaded.insert(key, source.clone());
-        Ok(source)
-    }
+fn origins(scenarios: &Names, distributions: &Names, vehicles: &Names) -> Vec<Origin> {
+    let names = scenarios.iter().zip(distributions).zip(vehicles);
+    let origin =
+        |((scenario, distribution), vehicle): ((&Option<String>, &Option<String>), &Option<String>)| Origin {
+            scenario: scenario.clone(),
+            distribution: distribution.clone(),
+            vehicle: vehicle.clone(),
+        };
+    names.map(origin).collect()
 }
 
 impl Vector {
@@ -101,11 +105,12 @@ impl Vector {
         settings: String,
         scenarios: Names,
         distributions: Names,
+        vehicles: Names,
         autoreset: String,
         step_limit: Option<u64>,
         threads: usize,
     ) -> PyResult<Self> {
-        let setup = setup(&settings)?;
+        let (setup, sources) = setup(&settings, &origins(&scenarios, &distributions, &vehicles))?;
         let mode = match autoreset.as_str() {
             "NextStep" => Autoreset::NextStep,
             "SameStep" => Autoreset::SameStep,
@@ -116,17 +121,10 @@ impl Vector {
                 return Err(PyValueError::new_err(message));
             }
         };
-        let mut sources = Sources { setup: &setup, loaded: HashMap::new() };
-        let mut episodes = Vec::with_capacity(scenarios.len());
-        for (scenario, distribution) in scenarios.iter().zip(&distributions) {
-            let source = sources.get(scenario.as_ref(), distribution.as_ref())?.ok_or_else(|| {
-                PyValueError::new_err("scenario and distribution are None, but one must be given")
-            })?;
-            episodes.push(Episode::new(Arc::clone(&setup), source));
-        }
+        let episodes = sources.into_iter().map(|source| Episode::new(Arc::clone(&setup), source)).collect();
         let inner = vector::Vector::new(episodes, mode, step_limit, threads);
-        let arguments = (settings, scenarios, distributions, autoreset, step_limit, threads);
-        Ok(Self { arguments, setup, autoreset: mode, inner, closed: false })
+        let arguments = (settings, scenarios, distributions, vehicles, autoreset, step_limit, threads);
+        Ok(Self { arguments, setup, autoreset: mode, inner, names: SignalNames::default(), closed: false })
     }
 
     /// Resets environments, each with its seed and, just this once, its scenario or distribution.
@@ -139,13 +137,17 @@ impl Vector {
         distributions: Names,
     ) -> PyResult<Bound<'py, PyDict>> {
         self.require_open(py)?;
-        let mut sources = Sources { setup: &self.setup, loaded: HashMap::new() };
-        let mut once = Vec::with_capacity(indices.len());
-        for (scenario, distribution) in scenarios.iter().zip(&distributions) {
-            once.push(sources.get(scenario.as_ref(), distribution.as_ref())?);
+        indices.iter().try_for_each(|&index| self.check_index(index))?;
+        let vehicles: Names = indices.iter().map(|&index| self.arguments.3[index].clone()).collect();
+        let mut loaded: HashMap<Origin, Option<Source>> = HashMap::new();
+        let mut sources = Vec::with_capacity(indices.len());
+        for origin in origins(&scenarios, &distributions, &vehicles) {
+            if !loaded.contains_key(&origin) {
+                loaded.insert(origin.clone(), once(&self.setup, origin.clone())?);
+            }
+            sources.push(loaded[&origin].clone());
         }
-        for ((&index, seed), once) in indices.iter().zip(seeds).zip(&once) {
-            self.check_index(index)?;
+        for ((&index, seed), once) in indices.iter().zip(seeds).zip(&sources) {
             self.inner.reset(index, seed, once.as_ref()).map_err(to_python)?;
         }
         self.trips_info(py, &indices)
@@ -165,7 +167,7 @@ impl Vector {
         Ok(array)
     }
 
-    fn step<'py>(&mut self, py: Python<'py>, action: &Bound<'py, PyAny>) -> PyResult<Step<'py>> {
+    fn step<'py>(&mut self, py: Python<'py>, action: &Bound<'py, PyAny>) -> PyResult<Outcomes> {
         self.require_ready(py)?;
         if self.autoreset == Autoreset::Disabled && self.inner.over().contains(&true) {
             let over = self.inner.over().iter().enumerate().filter(|(_, over)| **over);
@@ -201,9 +203,16 @@ impl Vector {
             let inner = &mut self.inner;
             py.detach(|| inner.step(actions, &mut results)).map_err(to_python)?
         };
-        let told = self.trips_info(py, &events.reset)?;
-        let finished = self.finished(py, events.finished)?;
-        Ok((observations, rewards, terminated, truncated, parts, finished, events.reset, told))
+        Ok(Outcomes {
+            observations: observations.unbind(),
+            rewards: rewards.unbind(),
+            terminated: terminated.unbind(),
+            truncated: truncated.unbind(),
+            parts: parts.unbind(),
+            finished: self.finished(py, events.finished)?,
+            trips: self.trips_info(py, &events.reset)?.unbind(),
+            reset: events.reset,
+        })
     }
 
     fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
@@ -244,6 +253,35 @@ impl Vector {
         self.require_ready(py)?;
         self.check_index(index)?;
         Ok(looked(&self.inner.episodes()[index]).into_pyarray(py))
+    }
+
+    /// Names of all signals of the vehicle of one environment's trip.
+    fn signal_names<'py>(&mut self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyTuple>> {
+        self.require_ready(py)?;
+        self.check_index(index)?;
+        self.names.of(py, &self.inner.episodes()[index])
+    }
+
+    /// What the vehicle of one environment's trip is made of.
+    fn layout<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
+        self.require_ready(py)?;
+        self.check_index(index)?;
+        layout_dict(py, self.inner.episodes()[index].trip().map(|(_, experiment)| &experiment.plant.vehicle))
+    }
+
+    /// Name, unit, options (empty for levels) and description of each action.
+    fn action_rows(&self) -> Vec<ActuatorTuple> {
+        self.setup.actions.rows().iter().map(action_tuple).collect()
+    }
+
+    /// Number of options of each action; empty in continuous mode.
+    fn option_counts(&self) -> Vec<usize> {
+        if self.setup.continuous { Vec::new() } else { self.setup.actions.option_counts().to_vec() }
+    }
+
+    /// Name, unit, low, high and meaning of every row of an observation.
+    fn observation_rows(&self) -> Vec<ObservedRow> {
+        self.setup.observations.rows().iter().map(observed_row).collect()
     }
 
     /// Speed at every full second of the trip of one environment.
@@ -290,18 +328,10 @@ impl Vector {
     /// Restores environments, all or none.
     fn set_states(&mut self, py: Python<'_>, indices: Vec<usize>, states: Vec<Vec<u8>>) -> PyResult<()> {
         self.require_open(py)?;
-        let mut kept = Vec::with_capacity(indices.len());
-        for (&index, state) in indices.iter().zip(&states) {
-            self.check_index(index)?;
-            kept.push((index, self.inner.to_bytes(index).map_err(to_python)?));
-            if let Err(error) = self.inner.restore(index, state) {
-                for (index, state) in kept {
-                    self.inner.restore(index, &state).map_err(to_python)?;
-                }
-                return Err(to_python(error));
-            }
-        }
-        Ok(())
+        indices.iter().try_for_each(|&index| self.check_index(index))?;
+        let states: Vec<(usize, &[u8])> =
+            indices.iter().copied().zip(states.iter().map(Vec::as_slice)).collect();
+        self.inner.restore(&states).map_err(to_python)
     }
 
     fn close(&mut self) {
@@ -311,11 +341,7 @@ impl Vector {
     #[allow(clippy::type_complexity)]
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
-    ) -> PyResult<(
-        Bound<'py, PyAny>,
-        (String, Names, Names, String, Option<u64>, usize),
-        (Vec<Bound<'py, PyBytes>>, bool),
-    )> {
+    ) -> PyResult<(Bound<'py, PyAny>, Arguments, (Vec<Bound<'py, PyBytes>>, bool))> {
         let this = slf.borrow();
         let count = this.inner.episodes().len();
         let states = (0..count).map(|index| this.get_state(slf.py(), index)).collect::<PyResult<Vec<_>>>()?;
@@ -323,16 +349,15 @@ impl Vector {
     }
 
     fn __setstate__(&mut self, state: (Vec<Vec<u8>>, bool)) -> PyResult<()> {
-        for (index, bytes) in state.0.iter().enumerate() {
-            self.inner.restore(index, bytes).map_err(to_python)?;
-        }
+        let states: Vec<(usize, &[u8])> = state.0.iter().map(Vec::as_slice).enumerate().collect();
+        self.inner.restore(&states).map_err(to_python)?;
         self.closed = state.1;
         Ok(())
     }
 }
 
 impl Vector {
-    fn finished<'py>(&self, py: Python<'py>, trips: Vec<vector::Finished>) -> PyResult<Vec<Finished<'py>>> {
+    fn finished(&self, py: Python<'_>, trips: Vec<vector::Finished>) -> PyResult<Vec<Py<FinishedTrip>>> {
         let mut finished = Vec::with_capacity(trips.len());
         for trip in trips {
             let info = parts_info(py, &trip.parts)?;
@@ -340,8 +365,11 @@ impl Vector {
                 info.set_item("end_reason", end.name())?;
                 info.set_item("kpis", kpis(py, &trip.terms, &self.setup.reward)?)?;
             }
-            let last = trip.last_observation.map(|values| values.into_pyarray(py));
-            finished.push((trip.index, info, last));
+            let last_observation = trip.last_observation.map(|values| values.into_pyarray(py).unbind());
+            finished.push(Py::new(
+                py,
+                FinishedTrip { index: trip.index, info: info.unbind(), last_observation },
+            )?);
         }
         Ok(finished)
     }
@@ -353,6 +381,8 @@ impl Vector {
         let ambient: Vec<f64> = trips().map(|(_, trip)| trip.climate.ambient_temperature_degc.0).collect();
         let told = PyDict::new(py);
         told.set_item(intern!(py, "scenario"), trips().map(|(origin, _)| origin).collect::<Vec<_>>())?;
+        let vehicles: Vec<&str> = trips().map(|(_, trip)| trip.scenario.vehicle.as_str()).collect();
+        told.set_item(intern!(py, "vehicle"), vehicles)?;
         told.set_item(intern!(py, "cycle"), trips().map(|(_, trip)| trip.cycle.name()).collect::<Vec<_>>())?;
         told.set_item(intern!(py, "trip_s"), durations_s.into_pyarray(py))?;
         told.set_item(intern!(py, "ambient_temperature_degc"), ambient.into_pyarray(py))?;

@@ -1,29 +1,18 @@
 //! What an environment adds to a plant step, and many environments at once: `cargo bench -p hp_episode`.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use hp_episode::action;
 use hp_episode::episode::Episode;
 use hp_episode::random::Random;
 use hp_episode::reference::{ReferenceConditions, ReferenceTrip};
-use hp_episode::setup::{Settings, Setup};
+use hp_episode::setup::{Origin, Settings, Setup, Source};
 use hp_episode::vector::{Actions, Autoreset, PARTS, Results, Vector};
-use hp_plant::command::ACTUATORS;
 use std::hint::black_box;
 use std::sync::Arc;
 
-fn setup() -> Arc<Setup> {
-    let names = ACTUATORS[..action::DEFAULT_ROWS].iter().map(|actuator| actuator.name.to_owned());
-    let settings = Settings {
-        continuous: false,
-        actions: names.collect(),
-        observations: vec!["default".to_owned()],
-        reward: "balanced".to_owned(),
-        reward_overrides: Vec::new(),
-        overrides: Vec::new(),
-        control_interval_s: 1,
-        sensor_noise: 0.0,
-    };
-    Arc::new(Setup::new(&settings).expect("built in"))
+fn setup() -> (Arc<Setup>, Source) {
+    let origin = Origin { distribution: Some("train-v1".to_owned()), ..Origin::default() };
+    let (setup, mut sources) = Setup::new(&Settings::default(), &[origin]).expect("built in");
+    (setup, sources.remove(0))
 }
 
 /// Environments on their way, with random levels for some steps.
@@ -38,8 +27,7 @@ struct Driven {
 
 impl Driven {
     fn new(count: usize, threads: usize) -> Self {
-        let setup = setup();
-        let source = setup.distribution("train-v1").expect("built in");
+        let (setup, source) = setup();
         let episodes = (0..count).map(|_| Episode::new(Arc::clone(&setup), source.clone())).collect();
         let mut vector = Vector::new(episodes, Autoreset::NextStep, None, threads);
         for index in 0..count {
@@ -78,7 +66,7 @@ impl Driven {
 
 fn parts(criterion: &mut Criterion) {
     let mut driven = Driven::new(1, 1);
-    let setup = setup();
+    let (setup, _) = setup();
     let episode = &mut driven.vector.episodes_mut()[0];
     let mut row = vec![0.0; setup.observations.rows().len()];
     criterion.bench_function("observation", |bencher| bencher.iter(|| episode.observe(black_box(&mut row))));

@@ -3,14 +3,12 @@
 //! `cargo build --release -p hp_episode --example steps`, then
 //! `valgrind --tool=callgrind target/release/examples/steps 64 200 1` (environments, steps, threads).
 //!
-//! A fourth number repeats the same trips. Every call's shortest time of all rounds is what it takes undisturbed.
+//! A fourth number repeats the same trips; vehicles may follow. Every call's shortest time of all rounds is what it takes undisturbed.
 
-use hp_episode::action;
 use hp_episode::episode::Episode;
 use hp_episode::random::Random;
-use hp_episode::setup::{Settings, Setup};
+use hp_episode::setup::{Origin, Settings, Setup};
 use hp_episode::vector::{Actions, Autoreset, PARTS, Results, Vector};
-use hp_plant::command::ACTUATORS;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -19,20 +17,17 @@ fn main() {
         std::env::args().nth(place).map_or(default, |text| text.parse().expect("a whole number"))
     };
     let (count, steps, threads, rounds) = (number(1, 64), number(2, 200), number(3, 1), number(4, 1));
-    let names = ACTUATORS[..action::DEFAULT_ROWS].iter().map(|actuator| actuator.name.to_owned());
-    let settings = Settings {
-        continuous: false,
-        actions: names.collect(),
-        observations: vec!["default".to_owned()],
-        reward: "balanced".to_owned(),
-        reward_overrides: Vec::new(),
-        overrides: Vec::new(),
-        control_interval_s: 1,
-        sensor_noise: 0.0,
+    // Further names are vehicles, which the environments have in turn.
+    let vehicles: Vec<String> = std::env::args().skip(5).collect();
+    let vehicle = |index: usize| vehicles.get(index % vehicles.len().max(1)).cloned();
+    let origin = |index| Origin {
+        distribution: Some("train-v1".to_owned()),
+        vehicle: vehicle(index),
+        ..Origin::default()
     };
-    let setup = Arc::new(Setup::new(&settings).expect("built in"));
-    let source = setup.distribution("train-v1").expect("built in");
-    let episodes = (0..count).map(|_| Episode::new(Arc::clone(&setup), source.clone())).collect();
+    let origins: Vec<Origin> = (0..count).map(origin).collect();
+    let (setup, sources) = Setup::new(&Settings::default(), &origins).expect("vehicles");
+    let episodes = sources.into_iter().map(|source| Episode::new(Arc::clone(&setup), source)).collect();
     let mut vector = Vector::new(episodes, Autoreset::NextStep, None, threads);
     let counts = setup.actions.option_counts();
     let mut levels = vec![0; count * counts.len()];

@@ -1,19 +1,13 @@
-//! What an agent can do: selected rows of the actuator table, as levels or as continuous values.
+//! What an agent can do: rows of actuators, as levels or as continuous values, and what they are in one vehicle.
 
-use hp_plant::circuits::branches::{self, Branch};
-use hp_plant::command::{
-    ACTUATOR_COUNT, ACTUATORS, BLOWER, Command, Connection, MAXIMUM_REQUEST_W, Member, RECIRCULATION,
-    REQUESTS, Scale,
-};
+use crate::defaults::Defaults;
+use crate::rows::{ActionRow, RowSet, unknown};
+use hp_plant::architecture::layout::{ACTUATOR_PLACES, BranchSide, CABIN_PLACES, Layout};
+use hp_plant::command::{Command, Purpose, Scale};
 use hp_plant::error::{PlantError, PlantResult};
 use hp_plant::plant::{Disturbance, Plant};
 use hp_plant::state::State;
-use hp_trip::controllers::rule_based::CabinMode;
-use hp_trip::experiment::Experiment;
-use hp_trip::heat_demand_commander;
-
-/// Rows that an agent controls by default: six connections, PTC, compressor.
-pub const DEFAULT_ROWS: usize = 8;
+use std::collections::BTreeMap;
 
 /// Levels of a row that is not a choice; for the compressor the first of them is off.
 pub const LEVELS: usize = 11;
@@ -21,20 +15,13 @@ pub const LEVELS: usize = 11;
 /// Normalised compressor demand of the lowest level that runs.
 const LOWEST_RUNNING: f64 = -0.9;
 
-/// Selected rows of the actuator table.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ActionTable {
-    rows: Vec<usize>,
-    selected: [bool; ACTUATOR_COUNT],
-    option_counts: Vec<usize>,
-    /// Normalised value of every option, row by row.
-    values: Vec<[f32; LEVELS]>,
-}
+/// Sets of actuators by name: those that agents control by default, those that rule-based controllers move, all.
+pub const GROUPS: [&str; 3] = ["default", "hpcu", "all"];
 
 /// Number of options of a row.
 #[must_use]
-pub fn options(row: usize) -> usize {
-    match ACTUATORS[row].scale {
+pub fn options(scale: &Scale) -> usize {
+    match scale {
         Scale::Choice(options) => options.len(),
         Scale::Linear | Scale::OffThenLogarithmic => LEVELS,
     }
@@ -42,11 +29,11 @@ pub fn options(row: usize) -> usize {
 
 /// Normalised value of an option of a row.
 #[must_use]
-pub fn option_value(row: usize, option: usize) -> f32 {
+pub fn option_value(scale: &Scale, option: usize) -> f32 {
     let k = option as f64;
     let last = (LEVELS - 1) as f64;
-    let value = match ACTUATORS[row].scale {
-        Scale::Choice(options) => (2.0 * k + 1.0) / options.len() as f64 - 1.0,
+    let value = match scale {
+        Scale::Choice(options) => return choice_value(options.len(), option),
         Scale::Linear => 2.0 * k / last - 1.0,
         Scale::OffThenLogarithmic if option == 0 => -1.0,
         Scale::OffThenLogarithmic => LOWEST_RUNNING + (1.0 - LOWEST_RUNNING) * (k - 1.0) / (last - 1.0),
@@ -56,74 +43,114 @@ pub fn option_value(row: usize, option: usize) -> f32 {
 
 /// Option of a row that is nearest to a normalised value.
 #[must_use]
-pub fn nearest_option(row: usize, value: f32) -> usize {
+pub fn nearest_option(scale: &Scale, value: f32) -> usize {
     let x = f64::from(value);
     let last = (LEVELS - 1) as f64;
-    let k = match ACTUATORS[row].scale {
-        Scale::Choice(options) => (0.5 * (x + 1.0) * options.len() as f64).floor(),
+    let k = match scale {
+        Scale::Choice(options) => return chosen(options.len(), value),
         Scale::Linear => (0.5 * (x + 1.0) * last).round(),
         Scale::OffThenLogarithmic if x < LOWEST_RUNNING - 1e-6 => 0.0,
         Scale::OffThenLogarithmic => {
             1.0 + ((x - LOWEST_RUNNING) / (1.0 - LOWEST_RUNNING) * (last - 1.0)).round().max(0.0)
         }
     };
-    (k.max(0.0) as usize).min(options(row) - 1)
+    (k.max(0.0) as usize).min(options(scale) - 1)
+}
+
+/// Normalised value in the middle of one of several options.
+fn choice_value(count: usize, option: usize) -> f32 {
+    ((2.0 * option as f64 + 1.0) / count as f64 - 1.0) as f32
+}
+
+/// Which of several options a normalised value lies in, as [`ActuatorRanges::physical`] reads it.
+///
+/// [`ActuatorRanges::physical`]: hp_plant::command::ActuatorRanges::physical
+#[must_use]
+#[inline]
+pub fn chosen(count: usize, value: f32) -> usize {
+    let share = 0.5 * (f64::from(value) + 1.0);
+    // The conversion rounds towards zero and holds what is below at zero.
+    ((share * count as f64) as usize).min(count - 1)
+}
+
+/// Selected rows, shared by all vehicles of an environment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ActionTable {
+    rows: Vec<ActionRow>,
+    option_counts: Vec<usize>,
+    /// Where the values of each row begin.
+    starts: Vec<usize>,
+    /// Normalised value of every option, row by row.
+    values: Vec<f32>,
+}
+
+/// An error about the list of actions.
+fn refused(value: impl Into<String>, allowed: &str) -> PlantError {
+    PlantError::InvalidArgument { what: "actions".into(), value: value.into(), allowed: allowed.into() }
 }
 
 impl ActionTable {
-    /// Rows by name.
+    /// Rows by name out of those that there are; a name of [`GROUPS`] stands for its rows. `options` replaces those of
+    /// choices by name, in the order given.
     ///
     /// # Errors
-    /// An unknown name, one given twice, or none at all.
-    pub fn new(names: &[String]) -> PlantResult<Self> {
-        let mut table = Self {
-            rows: Vec::with_capacity(names.len()),
-            selected: [false; ACTUATOR_COUNT],
-            option_counts: Vec::new(),
-            values: Vec::new(),
-        };
+    /// An unknown name, one given twice, or none at all; options of what is no choice.
+    pub fn new(names: &[String], set: &RowSet, options: &BTreeMap<String, Vec<String>>) -> PlantResult<Self> {
+        let mut rows: Vec<ActionRow> = Vec::with_capacity(names.len());
         for name in names {
-            let row = ACTUATORS.iter().position(|actuator| actuator.name == name).ok_or_else(|| {
-                let available = ACTUATORS.map(|actuator| actuator.name).join(", ");
-                PlantError::Unknown { kind: "action", name: name.clone(), available }
-            })?;
-            if std::mem::replace(&mut table.selected[row], true) {
-                return Err(PlantError::InvalidArgument {
-                    what: "actions".into(),
-                    value: format!("a list with `{name}` twice"),
-                    allowed: "must name each action once".into(),
-                });
+            let of_group: Option<fn(&ActionRow) -> bool> = match GROUPS.iter().position(|group| group == name)
+            {
+                Some(0) => Some(|row| row.by_default),
+                Some(1) => Some(|row| row.by_rules),
+                Some(_) => Some(|_| true),
+                None => None,
+            };
+            let selected: Vec<&ActionRow> = match of_group {
+                Some(fits) => set.actions.iter().filter(|row| fits(row)).collect(),
+                None => set.actions.iter().filter(|row| row.name == *name).collect(),
+            };
+            if selected.is_empty() {
+                return Err(unknown("action", name, &set.action_names()));
             }
-            table.rows.push(row);
-            table.option_counts.push(options(row));
-            table.values.push(std::array::from_fn(|option| option_value(row, option)));
+            for row in selected {
+                if rows.iter().any(|other| other.name == row.name) {
+                    let value = format!("a list with `{}` twice", row.name);
+                    return Err(refused(value, "must name each action once"));
+                }
+                rows.push(row.clone());
+            }
         }
-        if table.rows.is_empty() {
-            return Err(PlantError::InvalidArgument {
-                what: "actions".into(),
-                value: "empty".into(),
-                allowed: "must name at least one action".into(),
-            });
+        if rows.is_empty() {
+            return Err(refused("empty", "must name at least one action"));
         }
-        Ok(table)
+        for (name, options) in options {
+            replace_options(&mut rows, name, options)?;
+        }
+        Ok(Self::of(rows))
+    }
+
+    fn of(rows: Vec<ActionRow>) -> Self {
+        let option_counts: Vec<usize> = rows.iter().map(|row| options(&row.scale)).collect();
+        let mut starts = Vec::with_capacity(rows.len());
+        let mut values = Vec::new();
+        for (row, &count) in rows.iter().zip(&option_counts) {
+            starts.push(values.len());
+            values.extend((0..count).map(|option| option_value(&row.scale, option)));
+        }
+        Self { rows, option_counts, starts, values }
     }
 
     /// Selected rows in the order of an action.
     #[must_use]
-    pub fn rows(&self) -> &[usize] {
+    pub fn rows(&self) -> &[ActionRow] {
         &self.rows
     }
 
     /// Normalised value of an option of the row in a column of an action.
     #[must_use]
+    #[inline]
     pub fn value(&self, column: usize, option: usize) -> f32 {
-        self.values[column][option]
-    }
-
-    /// Whether a row is selected.
-    #[must_use]
-    pub fn selects(&self, row: usize) -> bool {
-        self.selected[row]
+        self.values[self.starts[column] + option]
     }
 
     /// Number of options of each selected row.
@@ -135,167 +162,300 @@ impl ActionTable {
     /// Length of the mask: all options of all selected rows.
     #[must_use]
     pub fn mask_length(&self) -> usize {
-        self.option_counts.iter().sum()
+        self.values.len()
+    }
+}
+
+fn replace_options(rows: &mut [ActionRow], name: &str, options: &[String]) -> PlantResult<()> {
+    let names: Vec<String> = rows.iter().map(|row| row.name.clone()).collect();
+    let Some(row) = rows.iter_mut().find(|row| row.name == name) else {
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        return Err(unknown("action", name, &names));
+    };
+    let Scale::Choice(known) = &row.scale else {
+        let value = format!("a list with options for `{name}`");
+        return Err(refused(value, "must name options of choices only"));
+    };
+    if options.first() != known.first() {
+        let value = format!("a list with `{name}` that begins with {options:?}");
+        return Err(refused(value, &format!("must begin with `{}`", known[0])));
+    }
+    row.scale = Scale::Choice(options.to_vec());
+    Ok(())
+}
+
+/// How the options of a choice that are shared differ from a vehicle's own.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Translation {
+    /// Own option for each shared one; none where the vehicle lacks it.
+    own: Vec<Option<usize>>,
+    /// Shared option for each own one; the first where it is not shared.
+    shared: Vec<usize>,
+}
+
+/// A column of an action in one vehicle.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Column {
+    /// Row of the command; none where the vehicle lacks it.
+    row: Option<usize>,
+    /// Only where the options are not the same.
+    translation: Option<Translation>,
+}
+
+/// Selected rows as one vehicle has them.
+///
+/// What it lacks is ignored: of a row all, of a choice the option, which acts as the first: isolated, closed, off.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FittedActions {
+    columns: Vec<Column>,
+    selected: [bool; ACTUATOR_PLACES],
+    /// Rows of the command where the vehicle has all columns and the same options; empty otherwise.
+    rows: Vec<usize>,
+}
+
+impl FittedActions {
+    /// A table's rows in a vehicle.
+    #[must_use]
+    pub fn of(table: &ActionTable, layout: &Layout) -> Self {
+        let mut selected = [false; ACTUATOR_PLACES];
+        let columns: Vec<Column> = table
+            .rows
+            .iter()
+            .map(|shared| {
+                let Some(row) = layout.actuator(&shared.name) else {
+                    return Column { row: None, translation: None };
+                };
+                selected[row] = true;
+                Column {
+                    row: Some(row),
+                    translation: translation(&shared.scale, &layout.actuators[row].scale),
+                }
+            })
+            .collect();
+        let plain = columns.iter().all(|column| column.translation.is_none());
+        let rows: Option<Vec<usize>> = columns.iter().map(|column| column.row).collect();
+        Self { columns, selected, rows: rows.filter(|_| plain).unwrap_or_default() }
     }
 
-    /// Which options the plant would grant in the coming second, row by row.
+    /// Whether a row of the vehicle is selected.
+    #[must_use]
+    #[inline]
+    pub fn selects(&self, row: usize) -> bool {
+        self.selected[row]
+    }
+
+    /// Enters values of the columns into a command.
+    #[inline]
+    pub fn enter(&self, values: &[f32], command: &mut Command) {
+        if self.rows.is_empty() {
+            self.enter_translated(values, command);
+            return;
+        }
+        for (&row, &value) in self.rows.iter().zip(values) {
+            command.0[row] = value;
+        }
+    }
+
+    #[cold]
+    fn enter_translated(&self, values: &[f32], command: &mut Command) {
+        for (column, &value) in self.columns.iter().zip(values) {
+            let Some(row) = column.row else { continue };
+            command.0[row] = match &column.translation {
+                None => value,
+                Some(Translation { own, shared }) => {
+                    choice_value(shared.len(), own[chosen(own.len(), value)].unwrap_or(0))
+                }
+            };
+        }
+    }
+
+    /// Normalised value of a column in a command; 0 where the vehicle lacks it.
+    #[must_use]
+    pub fn value(&self, column: usize, command: &Command) -> f32 {
+        let Column { row, translation } = &self.columns[column];
+        let Some(row) = *row else { return 0.0 };
+        match translation {
+            None => command.0[row],
+            Some(Translation { own, shared }) => {
+                choice_value(own.len(), shared[chosen(shared.len(), command.0[row])])
+            }
+        }
+    }
+
+    /// Row of the command that a column is read from as it is; none where it is translated or lacking.
+    #[must_use]
+    pub fn plain_row(&self, column: usize) -> Option<usize> {
+        let Column { row, translation } = &self.columns[column];
+        row.filter(|_| translation.is_none())
+    }
+
+    /// Whether the vehicle has the row of a column.
+    #[must_use]
+    pub fn has(&self, column: usize) -> bool {
+        self.columns[column].row.is_some()
+    }
+
+    /// Option of a column that is nearest to what a command has; the first where the vehicle lacks the row.
+    #[must_use]
+    pub fn level(&self, table: &ActionTable, column: usize, command: &Command) -> usize {
+        if !self.has(column) {
+            return 0;
+        }
+        nearest_option(&table.rows[column].scale, self.value(column, command))
+    }
+
+    /// Which options the plant would grant in the coming second, column by column.
     ///
     /// The cabin's air inlet depends on recirculation: where an agent controls that or the blower, a connection counts as
-    /// granted if some recirculated share makes it so.
+    /// granted if some recirculated share makes it so. Of what the vehicle lacks only the first option of a row is granted.
     pub fn write_mask(
         &self,
+        table: &ActionTable,
         plant: &Plant,
         state: &State,
         disturbance: &Disturbance,
         defaults: &Defaults,
         mask: &mut [bool],
     ) {
+        let asked = Asked { plant, state, disturbance, defaults, actions: self };
         let mut place = 0;
-        for &row in &self.rows {
-            for option in 0..options(row) {
-                mask[place] = match Member::ALL.get(row) {
-                    Some(&member) => self.granted(plant, state, disturbance, defaults, member, option),
-                    None => true,
+        for (column, &count) in self.columns.iter().zip(&table.option_counts) {
+            for option in 0..count {
+                mask[place] = match (column.row, &column.translation) {
+                    (None, _) => option == 0,
+                    (Some(row), None) => asked.granted(row, option),
+                    (Some(row), Some(translation)) => {
+                        translation.own[option].is_some_and(|own| asked.granted(row, own))
+                    }
                 };
                 place += 1;
             }
         }
     }
+}
 
-    fn granted(
-        &self,
-        plant: &Plant,
-        state: &State,
-        disturbance: &Disturbance,
-        defaults: &Defaults,
-        member: Member,
-        option: usize,
-    ) -> bool {
-        let Some(branch) = Branch::of(member, member.options()[option]) else { return true };
-        let at = |recirculation: f64| {
-            let temperatures = plant.branch_temperatures(state, recirculation, disturbance.air.temperature_k);
-            branches::allowed(&plant.vehicle, &temperatures, &state.connected)[branch as usize]
+/// How shared options differ from own ones, if they do.
+fn translation(shared: &Scale, own: &Scale) -> Option<Translation> {
+    let (Scale::Choice(shared), Scale::Choice(own)) = (shared, own) else { return None };
+    if shared == own {
+        return None;
+    }
+    Some(Translation {
+        own: shared.iter().map(|option| own.iter().position(|other| other == option)).collect(),
+        shared: own
+            .iter()
+            .map(|option| shared.iter().position(|other| other == option).unwrap_or(0))
+            .collect(),
+    })
+}
+
+/// What a mask is worked out for.
+struct Asked<'a> {
+    plant: &'a Plant,
+    state: &'a State,
+    disturbance: &'a Disturbance,
+    defaults: &'a Defaults,
+    actions: &'a FittedActions,
+}
+
+impl Asked<'_> {
+    fn granted(&self, row: usize, option: usize) -> bool {
+        let layout = self.plant.layout();
+        let Purpose::Connection(member) = layout.actuators[row].purpose else { return true };
+        let Some(&branch) = option.checked_sub(1).and_then(|place| layout.members[member].options.get(place))
+        else {
+            return true;
         };
-        if member != Member::Cabin {
-            return at(0.0);
-        }
-        // Some of it may be held back for the sake of fresh air.
-        let effective = |blower: f32, recirculation: f32| {
-            let (level, share) =
-                (plant.ranges.physical(BLOWER, blower), plant.ranges.physical(RECIRCULATION, recirculation));
-            plant.vehicle.cabin.ventilation(level, share, disturbance.occupants).recirculation
+        let BranchSide::Core(cabin) = layout.branches[branch].side else {
+            return self.allowed(branch, [0.0; CABIN_PLACES]);
         };
-        if self.selects(RECIRCULATION) || self.selects(BLOWER) {
-            at(0.0) || at(effective(1.0, 1.0))
+        let at = |share: f64| {
+            let mut recirculation = [0.0; CABIN_PLACES];
+            recirculation[cabin] = share;
+            self.allowed(branch, recirculation)
+        };
+        let cabin_rows = &layout.cabins[cabin];
+        if self.actions.selects(cabin_rows.recirculation_row) || self.actions.selects(cabin_rows.blower_row) {
+            at(0.0) || at(self.effective(cabin, 1.0, 1.0))
         } else {
-            at(effective(defaults.command.0[BLOWER], defaults.recirculation(branch == Branch::CabinChiller)))
-        }
-    }
-}
-
-/// What rows do that the agent does not control: what the rule-based controller would ask of them.
-///
-/// Flows, blower, set point and requested heat flows are those of scenario and controller. Two rows follow what
-/// the agent asks for: with the cabin on the chiller loop air is recirculated as in air conditioning, and with
-/// the front-end exchanger on the HTC its request is unlimited.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Defaults {
-    command: Command,
-    heating_recirculation: f32,
-    cooling_recirculation: f32,
-    unlimited_request: f32,
-    requests_change: bool,
-}
-
-/// Row of the front-end exchanger's request.
-const AMBIENT_REQUEST: usize = REQUESTS + Member::Ambient as usize;
-
-impl Defaults {
-    /// Defaults of a scenario.
-    #[must_use]
-    pub fn of(experiment: &Experiment) -> Self {
-        let ranges = &experiment.plant.ranges;
-        let settings = experiment.rules.constant_settings();
-        let requests_w = heat_demand_commander::requests_w(&experiment.scenario.heat_demand, 0.0);
-        let demand = settings.demand(CabinMode::Heating, &requests_w);
-        Self {
-            command: ranges.encode(&demand),
-            heating_recirculation: ranges.normalise(RECIRCULATION, settings.heating_recirculation),
-            cooling_recirculation: ranges.normalise(RECIRCULATION, settings.cooling_recirculation),
-            unlimited_request: ranges.normalise(AMBIENT_REQUEST, MAXIMUM_REQUEST_W),
-            requests_change: !experiment.scenario.heat_demand.schedule.is_empty(),
+            let cooling = !layout.branches[branch].out_of_loop;
+            let blower = self.defaults.command().0[cabin_rows.blower_row];
+            at(self.effective(cabin, blower, self.defaults.recirculation(cabin, cooling)))
         }
     }
 
-    /// Normalised recirculated share while the cabin is on the chiller loop or not.
-    #[must_use]
-    pub fn recirculation(&self, cooling: bool) -> f32 {
-        if cooling { self.cooling_recirculation } else { self.heating_recirculation }
+    fn allowed(&self, branch: usize, recirculation: [f64; CABIN_PLACES]) -> bool {
+        let temperatures = self.plant.branch_temperatures(self.state, &recirculation, self.disturbance);
+        let difference_k = self.plant.branch_difference_k(&temperatures, branch);
+        let ambient_k = self.disturbance.air.temperature_k;
+        self.plant.branches.allows(branch, difference_k, ambient_k, self.state.connected[branch])
     }
 
-    /// The whole command for values of the selected rows.
-    #[must_use]
-    pub fn complete(
-        &self,
-        table: &ActionTable,
-        values: &[f32],
-        experiment: &Experiment,
-        time_s: f64,
-    ) -> Command {
-        let mut command = self.command;
-        if self.requests_change {
-            let ranges = &experiment.plant.ranges;
-            let requests_w = heat_demand_commander::requests_w(&experiment.scenario.heat_demand, time_s);
-            for (i, request_w) in requests_w.into_iter().enumerate() {
-                command.0[REQUESTS + i] = ranges.normalise(REQUESTS + i, request_w);
-            }
-        }
-        for (&row, &value) in table.rows.iter().zip(values) {
-            command.0[row] = value;
-        }
-        if !table.selects(RECIRCULATION) {
-            let cooling = asked(&command, Member::Cabin) == Connection::Chiller;
-            command.0[RECIRCULATION] = self.recirculation(cooling);
-        }
-        if !table.selects(AMBIENT_REQUEST) && asked(&command, Member::Ambient) == Connection::Htc {
-            command.0[AMBIENT_REQUEST] = self.unlimited_request;
-        }
-        command
+    /// Recirculated share; some of it may be held back for the sake of fresh air.
+    fn effective(&self, cabin: usize, blower: f32, recirculation: f32) -> f64 {
+        let (ranges, rows) = (&self.plant.ranges, &self.plant.layout().cabins[cabin]);
+        let level = ranges.physical(rows.blower_row, blower);
+        let share = ranges.physical(rows.recirculation_row, recirculation);
+        let cabin = &self.plant.vehicle.cabins[cabin];
+        let occupants = self.disturbance.occupants * cabin.occupant_share;
+        cabin.parameters.ventilation(level, share, occupants).recirculation
     }
-}
-
-/// Connection that a command asks for, as [`ActuatorRanges::physical`] reads it.
-///
-/// [`ActuatorRanges::physical`]: hp_plant::command::ActuatorRanges::physical
-#[must_use]
-pub fn asked(command: &Command, member: Member) -> Connection {
-    let options = member.options();
-    let share = 0.5 * (f64::from(command.0[member as usize]) + 1.0);
-    // The conversion rounds towards zero and holds what is below at zero.
-    options[((share * options.len() as f64) as usize).min(options.len() - 1)]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hp_plant::command::COMPRESSOR;
+    use crate::rows::tests::rows_of;
+    use hp_plant::config::vehicle::architecture;
+    use hp_trip::experiment::Experiment;
+
+    fn table(names: &[&str], set: &RowSet) -> PlantResult<ActionTable> {
+        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+        ActionTable::new(&names, set, &BTreeMap::new())
+    }
 
     #[test]
     fn every_option_is_the_nearest_to_its_own_value() {
-        for (row, actuator) in ACTUATORS.iter().enumerate() {
-            for option in 0..options(row) {
-                assert_eq!(nearest_option(row, option_value(row, option)), option, "{}", actuator.name);
+        for row in rows_of(&["jeffs2019", "direct"]).actions {
+            for option in 0..options(&row.scale) {
+                assert_eq!(
+                    nearest_option(&row.scale, option_value(&row.scale, option)),
+                    option,
+                    "{}",
+                    row.name
+                );
             }
         }
+    }
+
+    #[test]
+    fn default_actions_of_the_paper_are_six_connections_the_ptc_and_the_compressor() {
+        let table = table(&["default"], &rows_of(&["jeffs2019"])).expect("built in");
+        let names: Vec<&str> = table.rows().iter().map(|row| row.name.as_str()).collect();
+        assert_eq!(
+            names,
+            [
+                "battery",
+                "motor",
+                "transmission",
+                "ambient",
+                "thermal_battery",
+                "cabin",
+                "ptc",
+                "compressor_power"
+            ]
+        );
+        assert_eq!(table.option_counts(), [3, 2, 2, 3, 3, 3, 2, 11]);
     }
 
     #[test]
     fn compressor_levels_are_off_and_ten_evenly_in_the_logarithm() {
         let experiment = Experiment::load("jeffs2019/case1-1", None, &[]).expect("built in");
         let ranges = &experiment.plant.ranges;
-        let powers: Vec<f64> =
-            (0..LEVELS).map(|k| ranges.physical(COMPRESSOR, option_value(COMPRESSOR, k))).collect();
-        let (low, high) = ranges.range(COMPRESSOR);
+        let row = ranges.row("compressor_power").expect("built in");
+        let scale = &ranges.rows()[row].scale;
+        let powers: Vec<f64> = (0..LEVELS).map(|k| ranges.physical(row, option_value(scale, k))).collect();
+        let (low, high) = ranges.range(row);
         assert_eq!(powers[0], 0.0);
         assert!((powers[1] / low - 1.0).abs() < 1e-5 && (powers[10] / high - 1.0).abs() < 1e-5);
         let ratio = (high / low).powf(1.0 / 9.0);
@@ -305,27 +465,76 @@ mod tests {
     }
 
     #[test]
-    fn connections_asked_for_are_those_that_the_plant_reads() {
+    fn options_asked_for_are_those_that_the_plant_reads() {
         let experiment = Experiment::load("jeffs2019/case1-1", None, &[]).expect("built in");
-        let mut command = Command([0.0; ACTUATOR_COUNT]);
+        let ranges = &experiment.plant.ranges;
+        let mut command = Command::default();
         for value in (-1000..=1000).map(|thousandth| thousandth as f32 / 1000.0) {
             command.0.fill(value);
-            let demand = experiment.plant.ranges.decode(&command);
-            for member in Member::ALL {
-                assert_eq!(asked(&command, member), demand.connections[member as usize], "{value}");
+            let demand = ranges.decode(&command);
+            for (row, actuator) in ranges.rows().iter().enumerate() {
+                if let Scale::Choice(options) = &actuator.scale {
+                    assert_eq!(chosen(options.len(), value) as f64, demand[row], "{value}");
+                }
             }
         }
     }
 
     #[test]
     fn unknown_doubled_and_no_actions_are_refused() {
-        let table = |names: &[&str]| {
-            ActionTable::new(&names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>())
-                .expect_err("must be refused")
-                .to_string()
+        let set = rows_of(&["jeffs2019"]);
+        let message = |names: &[&str]| table(names, &set).expect_err("must be refused").to_string();
+        assert!(message(&["heater"]).contains("unknown action `heater`; available: battery, motor"));
+        assert!(message(&["ptc", "ptc"]).contains("`ptc` twice"));
+        assert!(message(&["ptc", "default"]).contains("`ptc` twice"));
+        assert!(message(&[]).contains("at least one"));
+    }
+
+    #[test]
+    fn a_car_with_other_options_gets_its_own_by_name() {
+        let set = rows_of(&["jeffs2019", "three-loops"]);
+        let table = table(&["all"], &set).expect("built in");
+        for name in ["jeffs2019", "three-loops"] {
+            let layout = architecture(name).expect("built in");
+            let actions = FittedActions::of(&table, &layout);
+            for (column, shared) in table.rows().iter().enumerate() {
+                let Some(row) = layout.actuator(&shared.name) else {
+                    assert!(!actions.has(column));
+                    continue;
+                };
+                let own = &layout.actuators[row];
+                for option in 0..table.option_counts()[column] {
+                    let mut values = vec![0.0; table.rows().len()];
+                    values[column] = table.value(column, option);
+                    let mut command = Command::default();
+                    actions.enter(&values, &mut command);
+                    let entered = nearest_option(&own.scale, command.0[row]);
+                    let Scale::Choice(options) = &shared.scale else {
+                        assert_eq!((entered, actions.level(&table, column, &command)), (option, option));
+                        continue;
+                    };
+                    let wanted = own.options().iter().position(|other| *other == options[option]);
+                    assert_eq!(entered, wanted.unwrap_or(0), "{name}: {} {}", shared.name, options[option]);
+                    let back = actions.level(&table, column, &command);
+                    assert_eq!(back, if wanted.is_some() { option } else { 0 });
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn options_can_be_given_in_another_order() {
+        let set = rows_of(&["jeffs2019"]);
+        let names = vec!["battery".to_owned()];
+        let given = |options: &[&str]| {
+            let options = options.iter().map(|option| (*option).to_owned()).collect();
+            ActionTable::new(&names, &set, &BTreeMap::from([("battery".to_owned(), options)]))
         };
-        assert!(table(&["heater"]).contains("unknown action `heater`; available: battery, motor"));
-        assert!(table(&["ptc", "ptc"]).contains("`ptc` twice"));
-        assert!(table(&[]).contains("at least one"));
+        let table = given(&["isolated", "chiller", "htc"]).expect("begins with the first");
+        let layout = architecture("jeffs2019").expect("built in");
+        let mut command = Command::default();
+        FittedActions::of(&table, &layout).enter(&[table.value(0, 1)], &mut command);
+        assert_eq!(chosen(3, command.0[layout.actuator("battery").expect("there")]), 2);
+        assert!(given(&["chiller"]).is_err());
     }
 }

@@ -1,14 +1,14 @@
 //! One environment: trips driven second by second from start to arrival.
 
-use crate::action::{self, Defaults};
+use crate::defaults::Defaults;
 use crate::garage::Trip;
 use crate::observation::Look;
 use crate::random::Random;
 use crate::reference::ReferenceConditions;
 use crate::reward::{Meter, Parts, Terms};
-use crate::setup::{Setup, Source};
+use crate::setup::{Car, Setup, Source, vehicle_label};
 use crate::snapshot;
-use hp_plant::command::{ACTUATOR_COUNT, Command};
+use hp_plant::command::Command;
 use hp_plant::error::PlantResult;
 use hp_plant::signals::View;
 use hp_trip::experiment::Experiment;
@@ -45,19 +45,51 @@ struct Progress {
 #[derive(Debug, Clone)]
 struct Current {
     origin: Arc<str>,
+    vehicle: Option<Arc<str>>,
     window: Option<(usize, usize)>,
     experiment: Experiment,
+    car: Arc<Car>,
     conditions: ReferenceConditions,
     defaults: Defaults,
     progress: Progress,
 }
 
+/// Steps since the last reset, and whether the environment waits for the next; kept by what steps environments together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Clock {
+    /// Steps done.
+    pub elapsed: u64,
+    /// Whether the trip is over.
+    pub over: bool,
+}
+
 /// Everything that an episode's future depends on.
 #[derive(Serialize, Deserialize)]
 struct Snapshot {
+    clock: Clock,
     random: Random,
     noise: Random,
-    current: Option<(Trip, Progress)>,
+    current: Option<Driven>,
+}
+
+/// A trip in progress as a snapshot holds it.
+#[derive(Serialize, Deserialize)]
+struct Driven {
+    trip: Trip,
+    /// Its vehicle in words, and a hash of that one's parameters.
+    vehicle: String,
+    fingerprint: u64,
+    progress: Progress,
+}
+
+/// A state that was read and found to fit.
+#[derive(Debug)]
+pub struct Restored {
+    /// Its clock.
+    pub clock: Clock,
+    random: Random,
+    noise: Random,
+    current: Option<Current>,
 }
 
 /// One environment.
@@ -72,20 +104,22 @@ pub struct Episode {
 
 impl Current {
     fn of(setup: &Setup, trip: Trip) -> PlantResult<Self> {
-        let (origin, window) = (Arc::clone(&trip.origin), trip.window);
+        let (origin, vehicle, window) = (Arc::clone(&trip.origin), trip.vehicle.clone(), trip.window);
         let experiment = setup.garage.build(trip)?;
         let run = experiment.start();
         let defaults = Defaults::of(&experiment);
-        let off: Vec<f32> = setup.actions.rows().iter().map(|&row| action::option_value(row, 0)).collect();
+        let car = setup.car(&experiment);
+        let off: Vec<f32> =
+            (0..setup.actions.rows().len()).map(|column| setup.actions.value(column, 0)).collect();
         let progress = Progress {
             meter: Meter::start(&run.state),
-            asked: defaults.complete(&setup.actions, &off, &experiment, 0.0),
+            asked: defaults.complete(&car.actions, &off, &experiment, 0.0),
             run,
             ruled: None,
             end: None,
         };
         let conditions = ReferenceConditions::of(&experiment);
-        Ok(Self { origin, window, experiment, conditions, defaults, progress })
+        Ok(Self { origin, vehicle, window, experiment, car, conditions, defaults, progress })
     }
 
     /// What defines the trip.
@@ -93,6 +127,7 @@ impl Current {
         let Experiment { climate, initial, cycle, .. } = &self.experiment;
         Trip {
             origin: Arc::clone(&self.origin),
+            vehicle: self.vehicle.clone(),
             cycle: cycle.name().into(),
             climate: climate.clone(),
             initial: initial.clone(),
@@ -150,12 +185,12 @@ impl Episode {
     /// Nothing happens, and there is no outcome, before the first reset and after the end of a trip.
     pub fn step(&mut self, values: &[f32]) -> Option<Outcome> {
         let current = self.current.as_mut().filter(|current| current.progress.end.is_none())?;
-        let Current { experiment, conditions, defaults, progress, .. } = current;
+        let Current { experiment, car, conditions, defaults, progress, .. } = current;
         let mut added = Terms::default();
         progress.ruled = None;
         for _ in 0..self.setup.control_interval_s {
             let time_s = progress.run.state.time_s;
-            progress.asked = defaults.complete(&self.setup.actions, values, experiment, time_s);
+            progress.asked = defaults.complete(&car.actions, values, experiment, time_s);
             let disturbance = experiment.disturbance(progress.run.steps);
             progress.end = experiment.step(&mut progress.run, &progress.asked);
             added += progress.meter.add(
@@ -180,7 +215,7 @@ impl Episode {
             values.fill(0.0);
             return;
         };
-        let Current { experiment, progress, .. } = current;
+        let Current { experiment, car, progress, .. } = current;
         let disturbance = experiment.disturbance(progress.run.steps.saturating_sub(1));
         let look = Look {
             view: View {
@@ -196,7 +231,7 @@ impl Episode {
         let strength = self.setup.sensor_noise;
         let noise = &mut self.noise;
         let blur = (strength > 0.0).then_some(|| strength * noise.normal());
-        self.setup.observations.write(&look, blur, values);
+        self.setup.observations.write(&car.observations, &look, blur, values);
     }
 
     /// Writes which options of the actions would be granted now; all before the first reset.
@@ -205,9 +240,10 @@ impl Episode {
             mask.fill(true);
             return;
         };
-        let Current { experiment, progress, defaults, .. } = current;
+        let Current { experiment, car, progress, defaults, .. } = current;
         let disturbance = experiment.disturbance(progress.run.steps);
-        self.setup.actions.write_mask(&experiment.plant, &progress.run.state, &disturbance, defaults, mask);
+        let (table, state) = (&self.setup.actions, &progress.run.state);
+        car.actions.write_mask(table, &experiment.plant, state, &disturbance, defaults, mask);
     }
 
     /// Command of the rule-based controller for the next control interval; the same until the next step.
@@ -217,6 +253,24 @@ impl Episode {
             progress.ruled = Some(experiment.rule_based_command(&mut progress.run));
         }
         progress.ruled
+    }
+
+    /// Writes the options nearest to what the rule-based controller wants; nothing before the first reset.
+    pub fn rule_based_levels(&mut self, levels: &mut [i64]) {
+        let Some(command) = self.rule_based_command() else { return };
+        let Some(current) = &self.current else { return };
+        for (column, level) in levels.iter_mut().enumerate() {
+            *level = current.car.actions.level(&self.setup.actions, column, &command) as i64;
+        }
+    }
+
+    /// Writes the normalised values that the rule-based controller wants; nothing before the first reset.
+    pub fn rule_based_values(&mut self, values: &mut [f32]) {
+        let Some(command) = self.rule_based_command() else { return };
+        let Some(current) = &self.current else { return };
+        for (column, value) in values.iter_mut().enumerate() {
+            *value = current.car.actions.value(column, &command);
+        }
     }
 
     /// Origin of the trip in progress, and what it is made of.
@@ -231,10 +285,11 @@ impl Episode {
         self.current.as_ref().map(|current| &current.progress.run)
     }
 
-    /// The command that was driven last.
+    /// The command that was driven last, a value for each actuator of the vehicle.
     #[must_use]
-    pub fn asked(&self) -> Option<[f32; ACTUATOR_COUNT]> {
-        self.current.as_ref().map(|current| current.progress.asked.0)
+    pub fn asked(&self) -> Option<&[f32]> {
+        let current = self.current.as_ref()?;
+        Some(&current.progress.asked.0[..current.experiment.plant.ranges.count()])
     }
 
     /// Terms of the trip so far.
@@ -243,28 +298,47 @@ impl Episode {
         self.current.as_ref().map(|current| &current.progress.meter.total)
     }
 
-    /// Everything that the future depends on, as bytes.
+    /// Everything that the future depends on, as bytes, with a clock.
     ///
     /// # Errors
     /// See [`snapshot::pack`].
-    pub fn to_bytes(&self) -> PlantResult<Vec<u8>> {
-        let current = self.current.as_ref().map(|current| (current.trip(), current.progress));
-        let snapshot = Snapshot { random: self.random.clone(), noise: self.noise.clone(), current };
-        snapshot::pack(self.setup.fingerprint, &snapshot)
+    pub fn to_bytes(&self, clock: Clock) -> PlantResult<Vec<u8>> {
+        let current = self.current.as_ref().map(|current| Driven {
+            trip: current.trip(),
+            vehicle: vehicle_label(&current.experiment),
+            fingerprint: current.car.fingerprint,
+            progress: current.progress,
+        });
+        let snapshot = Snapshot { clock, random: self.random.clone(), noise: self.noise.clone(), current };
+        snapshot::pack(&self.setup.identity, &snapshot)
     }
 
-    /// Goes on from where [`Self::to_bytes`] was called.
+    /// Reads what [`Self::to_bytes`] wrote; changes nothing.
     ///
     /// # Errors
-    /// The bytes are not a state of an environment with these settings; nothing has changed then.
-    pub fn restore(&mut self, bytes: &[u8]) -> PlantResult<()> {
-        let snapshot: Snapshot = snapshot::unpack(self.setup.fingerprint, bytes)?;
-        self.current = match snapshot.current {
+    /// The bytes are not a state of an environment with these settings.
+    pub fn read(&self, bytes: &[u8]) -> PlantResult<Restored> {
+        let Snapshot { clock, random, noise, current } = snapshot::unpack(&self.setup.identity, bytes)?;
+        let current = match current {
             None => None,
-            Some((trip, progress)) => Some(Current { progress, ..Current::of(&self.setup, trip)? }),
+            Some(Driven { trip, vehicle, fingerprint, progress }) => {
+                let begun = Current::of(&self.setup, trip)?;
+                if begun.car.fingerprint != fingerprint {
+                    let now = vehicle_label(&begun.experiment);
+                    return Err(snapshot::refused(format!(
+                        "of {vehicle}, whose parameters were others than {now} has"
+                    )));
+                }
+                Some(Current { progress, ..begun })
+            }
         };
-        self.random = snapshot.random;
-        self.noise = snapshot.noise;
-        Ok(())
+        Ok(Restored { clock, random, noise, current })
+    }
+
+    /// Goes on from a state that was read.
+    pub fn resume(&mut self, restored: Restored) {
+        self.current = restored.current;
+        self.random = restored.random;
+        self.noise = restored.noise;
     }
 }

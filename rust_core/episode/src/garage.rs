@@ -16,6 +16,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 pub struct Trip {
     /// Scenario that gives all that is not below.
     pub origin: Arc<str>,
+    /// Vehicle, where not that of the scenario.
+    pub vehicle: Option<Arc<str>>,
     /// Drive cycle.
     pub cycle: Arc<str>,
     /// Climate.
@@ -35,7 +37,7 @@ pub struct Garage {
 
 #[derive(Debug, Default)]
 struct Shelves {
-    experiments: HashMap<String, Arc<Experiment>>,
+    experiments: HashMap<(String, Option<String>), Arc<Experiment>>,
     plants: HashMap<String, Arc<Plant>>,
     cycles: HashMap<String, DriveCycle>,
 }
@@ -52,22 +54,23 @@ impl Garage {
         self.shelves.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A scenario by name or path.
+    /// A scenario by name or path, with its own vehicle or another one.
     ///
     /// # Errors
-    /// Anything wrong in one of its files or in an override.
-    pub fn experiment(&self, name: &str) -> PlantResult<Arc<Experiment>> {
+    /// Anything wrong in one of its files or in an override, or a member that the vehicle cannot have.
+    pub fn experiment(&self, name: &str, vehicle: Option<&str>) -> PlantResult<Arc<Experiment>> {
         let mut shelves = self.shelves();
-        if let Some(experiment) = shelves.experiments.get(name) {
+        let key = (name.to_owned(), vehicle.map(str::to_owned));
+        if let Some(experiment) = shelves.experiments.get(&key) {
             return Ok(Arc::clone(experiment));
         }
-        let mut experiment = Experiment::load(name, None, &self.overrides)?;
+        let mut experiment = Experiment::with_vehicle(name, vehicle, None, &self.overrides)?;
         let vehicle = experiment.scenario.vehicle.clone();
         experiment.plant = Arc::clone(shelves.plants.entry(vehicle).or_insert(experiment.plant));
         let cycle = experiment.scenario.cycle.clone();
         experiment.cycle = shelves.cycles.entry(cycle).or_insert(experiment.cycle).clone();
         let experiment = Arc::new(experiment);
-        shelves.experiments.insert(name.to_owned(), Arc::clone(&experiment));
+        shelves.experiments.insert(key, Arc::clone(&experiment));
         Ok(experiment)
     }
 
@@ -85,14 +88,15 @@ impl Garage {
         Ok(cycle)
     }
 
-    /// The trip of a scenario file.
+    /// The trip of a scenario file, with its own vehicle or another one.
     ///
     /// # Errors
     /// See [`Self::experiment`].
-    pub fn trip(&self, name: &str) -> PlantResult<Trip> {
-        let experiment = self.experiment(name)?;
+    pub fn trip(&self, name: &str, vehicle: Option<&str>) -> PlantResult<Trip> {
+        let experiment = self.experiment(name, vehicle)?;
         Ok(Trip {
             origin: name.into(),
+            vehicle: vehicle.map(Into::into),
             cycle: experiment.scenario.cycle.as_str().into(),
             climate: experiment.climate.clone(),
             initial: experiment.initial.clone(),
@@ -105,13 +109,13 @@ impl Garage {
     /// # Errors
     /// Its origin or cycle cannot be loaded.
     pub fn build(&self, trip: Trip) -> PlantResult<Experiment> {
-        let origin = self.experiment(&trip.origin)?;
+        let origin = self.experiment(&trip.origin, trip.vehicle.as_deref())?;
         let mut cycle = self.cycle(&trip.cycle)?;
         if let Some((first_s, last_s)) = trip.window {
             cycle = cycle.window(first_s, last_s);
         }
         let ambient = trip.climate.ambient_temperature_degc;
-        let rules = origin.controller_file.at(ambient, &origin.scenario.strategy);
+        let rules = origin.controller_file.at(ambient, &origin.scenario.strategy, origin.plant.layout());
         Ok(Experiment {
             // Nearly all trips have the controller of their origin.
             rules: if rules == *origin.rules { Arc::clone(&origin.rules) } else { Arc::new(rules) },
@@ -123,6 +127,7 @@ impl Garage {
             cycle,
             controller: origin.controller.clone(),
             controller_file: Arc::clone(&origin.controller_file),
+            commander: Arc::clone(&origin.commander),
         })
     }
 }

@@ -4,6 +4,7 @@
 //! changes is plain data and can be written as bytes ([`snapshot`]).
 
 pub mod action;
+pub mod defaults;
 pub mod episode;
 pub mod garage;
 pub mod kinds;
@@ -12,6 +13,7 @@ mod prefetch;
 pub mod random;
 pub mod reference;
 pub mod reward;
+pub mod rows;
 pub mod scenario_sampler;
 pub mod setup;
 pub mod snapshot;

@@ -1,18 +1,18 @@
-//! What an agent can see: rows with bounds, read from the signal table, scaled to `[-1, 1]`.
+//! What an agent can see: rows with bounds, scaled to `[-1, 1]`, and where they are read in one vehicle.
 
-use crate::action::ActionTable;
-use hp_plant::circuits::branches::Branch;
-use hp_plant::command::{ACTUATORS, Command};
+use crate::action::{ActionTable, FittedActions};
+use crate::rows::{RowSet, branch_name, unknown};
+use hp_plant::command::Command;
 use hp_plant::config::ZERO_CELSIUS_K;
 use hp_plant::error::{PlantError, PlantResult};
 use hp_plant::flows::Flow;
 use hp_plant::numerics::thermal_network::Node;
-use hp_plant::signals::{self, Signal, View};
-use hp_plant::{UNROLLED, unrolled};
+use hp_plant::plant::Plant;
+use hp_plant::signals::{Reader, View};
 use hp_trip::experiment::Experiment;
 
 /// A row of an observation.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Observed {
     /// Name.
     pub name: String,
@@ -29,12 +29,13 @@ pub struct Observed {
     source: Source,
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Source {
-    Signal(Signal),
+    Signal,
     Solar,
     Occupants,
-    Branch(Branch),
+    Branch,
+    /// Column of an action.
     Asked(usize),
     SpeedAhead(usize),
     TimeLeft,
@@ -51,79 +52,6 @@ const PREVIEW_S: [usize; 6] = [2, 5, 10, 20, 40, 80];
 
 /// Longest time left that is told apart [s].
 const LONGEST_TIME_LEFT_S: f64 = 3600.0;
-
-/// Signals seen by default with their bounds.
-const DEFAULT_SIGNALS: [(&str, f64, f64); 36] = [
-    ("time_s", 0.0, 3600.0),
-    ("speed_m_s", 0.0, 40.0),
-    ("traction_power_w", -100_000.0, 100_000.0),
-    ("ambient_temperature_degc", -40.0, 50.0),
-    ("cabin_temperature_degc", -40.0, 80.0),
-    ("battery_temperature_degc", -40.0, 60.0),
-    ("motor_temperature_degc", -40.0, 120.0),
-    ("transmission_temperature_degc", -40.0, 120.0),
-    ("thermal_battery_temperature_degc", -40.0, 100.0),
-    ("htc_supply_temperature_degc", -40.0, 100.0),
-    ("htc_return_temperature_degc", -40.0, 100.0),
-    ("chiller_supply_temperature_degc", -40.0, 60.0),
-    ("chiller_return_temperature_degc", -40.0, 60.0),
-    ("htc_flow_kg_s", 0.0, 0.5),
-    ("chiller_flow_kg_s", 0.0, 0.5),
-    ("condensing_pressure_bar", 0.0, 32.0),
-    ("evaporating_pressure_bar", 0.0, 10.0),
-    ("discharge_temperature_degc", -40.0, 140.0),
-    ("compressor_speed_rev_s", 0.0, 150.0),
-    ("soc", 0.0, 1.0),
-    ("battery_charge_limit_w", 0.0, 150_000.0),
-    ("battery_discharge_limit_w", 0.0, 250_000.0),
-    ("battery_power_w", -100_000.0, 100_000.0),
-    ("compressor_power_w", 0.0, 5000.0),
-    ("ptc_power_w", 0.0, 6000.0),
-    ("auxiliary_power_w", 0.0, 1500.0),
-    ("condenser_heat_flow_w", 0.0, 15_000.0),
-    ("evaporator_heat_flow_w", 0.0, 15_000.0),
-    ("cabin_htc_heat_flow_w", -10_000.0, 10_000.0),
-    ("cabin_chiller_heat_flow_w", -10_000.0, 10_000.0),
-    ("battery_htc_heat_flow_w", -10_000.0, 10_000.0),
-    ("battery_chiller_heat_flow_w", -10_000.0, 10_000.0),
-    ("ambient_htc_heat_flow_w", -15_000.0, 15_000.0),
-    ("ambient_chiller_heat_flow_w", -15_000.0, 15_000.0),
-    ("motor_chiller_heat_flow_w", -10_000.0, 10_000.0),
-    ("transmission_chiller_heat_flow_w", -10_000.0, 10_000.0),
-];
-
-/// The signals seen by default, found while compiling: to read them is a straight line of loads.
-const DEFAULTS: [Signal; DEFAULT_SIGNALS.len()] = {
-    let mut signals = [signals::TIME; DEFAULT_SIGNALS.len()];
-    let mut place = 0;
-    while place < signals.len() {
-        signals[place] = signals::find(DEFAULT_SIGNALS[place].0).expect("a signal of this name");
-        place += 1;
-    }
-    signals
-};
-
-/// Bounds of hidden signals whose unit does not tell them.
-const HIDDEN_BOUNDS: [(&str, f64, f64); 6] = [
-    ("charge_soc", 0.0, 1.0),
-    ("loads_shed", 0.0, 1.0),
-    ("compressor_starts", 0.0, 100.0),
-    ("protection_trips", 0.0, 100.0),
-    ("refrigerant_flow_kg_s", 0.0, 0.1),
-    ("battery_voltage_v", 250.0, 500.0),
-];
-
-/// Bounds of other hidden signals, by unit.
-fn bounds_of_unit(unit: &str) -> (f64, f64) {
-    match unit {
-        "degC" => (-60.0, 140.0),
-        "W" => (-50_000.0, 50_000.0),
-        "A" => (-500.0, 500.0),
-        "bar" => (0.0, 32.0),
-        "kg/s" => (0.0, 0.5),
-        _ => (0.0, 10.0),
-    }
-}
 
 fn row(name: impl Into<String>, unit: &'static str, bounds: (f64, f64), source: Source) -> Observed {
     let name = name.into();
@@ -143,7 +71,7 @@ impl Observed {
 
     /// Blurred by sensor noise.
     fn measured(&self) -> bool {
-        matches!(self.source, Source::Signal(_) | Source::Solar)
+        matches!(self.source, Source::Signal | Source::Solar)
     }
 }
 
@@ -160,25 +88,28 @@ pub struct Look<'a> {
     pub steps: usize,
 }
 
-/// Every row there is, for an agent with these actions.
+/// Every row there is, for an agent with these actions: signals that are seen by default in their order, surroundings,
+/// granted connections, the previous action, then what is not seen by default.
 #[must_use]
-pub fn all(actions: &ActionTable) -> Vec<Observed> {
+pub fn all(set: &RowSet, actions: &ActionTable) -> Vec<Observed> {
     let mut rows = Vec::with_capacity(160);
-    for ((name, low, high), signal) in DEFAULT_SIGNALS.into_iter().zip(DEFAULTS) {
-        rows.push(row(name, signal.unit, (low, high), Source::Signal(signal)).meaning(signal.description));
-    }
+    let signal = |row_of: &crate::rows::SignalRow| {
+        row(row_of.name.clone(), row_of.unit, row_of.bounds, Source::Signal)
+            .meaning(row_of.description.clone())
+    };
+    let mut seen: Vec<_> = set.signals.iter().filter(|signal| signal.default.is_some()).collect();
+    // The same rank stays in column order.
+    seen.sort_by_key(|signal| signal.default);
+    rows.extend(seen.into_iter().map(signal));
     rows.push(row("solar_gain_w", "W", (0.0, 1500.0), Source::Solar).meaning("solar heat into the cabin"));
     rows.push(row("occupants", "-", (0.0, 5.0), Source::Occupants).meaning("people in the cabin"));
-    for branch in Branch::ALL {
-        let member = ACTUATORS[branch.member() as usize].name;
-        let circuit = format!("{:?}", branch.connection()).to_lowercase();
-        let name = format!("{member}_on_{circuit}");
-        rows.push(row(name, "-", (0.0, 1.0), Source::Branch(branch)).meaning("1 while the plant grants it"));
+    for name in &set.branches {
+        rows.push(row(name.clone(), "-", (0.0, 1.0), Source::Branch).meaning("1 while the plant grants it"));
     }
-    for &actuator in actions.rows() {
-        let name = format!("previous_{}", ACTUATORS[actuator].name);
+    for (column, action) in actions.rows().iter().enumerate() {
+        let name = format!("previous_{}", action.name);
         let meaning = "what was asked last, normalised";
-        rows.push(row(name, "-", (-1.0, 1.0), Source::Asked(actuator)).meaning(meaning));
+        rows.push(row(name, "-", (-1.0, 1.0), Source::Asked(column)).meaning(meaning));
     }
     for seconds in PREVIEW_S {
         let preview = row(format!("speed_in_{seconds}_s"), "m/s", (0.0, 40.0), Source::SpeedAhead(seconds));
@@ -186,80 +117,192 @@ pub fn all(actions: &ActionTable) -> Vec<Observed> {
     }
     let left = row("time_left_s", "s", (0.0, LONGEST_TIME_LEFT_S), Source::TimeLeft);
     rows.push(left.meaning("time to arrival").hidden());
-    for signal in signals::all() {
-        if DEFAULT_SIGNALS.iter().all(|(name, _, _)| *name != signal.name) {
-            let known = HIDDEN_BOUNDS.iter().find(|(name, _, _)| *name == signal.name);
-            let bounds = known.map_or_else(|| bounds_of_unit(signal.unit), |&(_, low, high)| (low, high));
-            rows.push(
-                row(signal.name, signal.unit, bounds, Source::Signal(signal))
-                    .meaning(signal.description)
-                    .hidden(),
-            );
-        }
-    }
+    rows.extend(set.signals.iter().filter(|row| row.default.is_none()).map(|row| signal(row).hidden()));
     rows
 }
 
-/// Places of an observation by where their values come from: read without asking each row what kind it is.
+/// Selected rows, shared by all vehicles of an environment.
+#[derive(Debug, Clone)]
+pub struct ObservationTable {
+    rows: Vec<Observed>,
+    /// What is shown as -1.
+    lows: Vec<f64>,
+    /// How much of the scale a unit takes.
+    gains: Vec<f64>,
+}
+
+/// As many rows as nearly all observations have: less to set to zero each second.
+const USUAL_ROWS: usize = 64;
+
+/// As many as one vehicle has, all told.
+const MANY_ROWS: usize = 256;
+
+fn refused(value: impl Into<String>, allowed: &str) -> PlantError {
+    PlantError::InvalidArgument { what: "observations".into(), value: value.into(), allowed: allowed.into() }
+}
+
+impl ObservationTable {
+    /// Rows by name out of those that there are; a group stands for its rows.
+    ///
+    /// # Errors
+    /// An unknown name, a row given twice, or none at all.
+    pub fn new(names: &[String], set: &RowSet, actions: &ActionTable) -> PlantResult<Self> {
+        let all = all(set, actions);
+        let mut rows: Vec<Observed> = Vec::new();
+        for name in names {
+            let selected: Vec<&Observed> = all
+                .iter()
+                .filter(|row| match name.as_str() {
+                    DEFAULT_GROUP => row.default,
+                    PREVIEW_GROUP => matches!(row.source, Source::SpeedAhead(_)),
+                    _ => row.name == *name,
+                })
+                .collect();
+            if selected.is_empty() {
+                let names: Vec<&str> = all.iter().map(|row| row.name.as_str()).collect();
+                return Err(unknown(
+                    "observation",
+                    name,
+                    &[&[DEFAULT_GROUP, PREVIEW_GROUP], &names[..]].concat(),
+                ));
+            }
+            for row in selected {
+                if rows.iter().any(|other| other.name == row.name) {
+                    let value = format!("a list with `{}` twice", row.name);
+                    return Err(refused(value, "must name each row once"));
+                }
+                rows.push(row.clone());
+            }
+        }
+        if rows.is_empty() {
+            return Err(refused("empty", "must name at least one row"));
+        }
+        let lows = rows.iter().map(|row| row.low).collect();
+        let gains = rows.iter().map(|row| 2.0 / (row.high - row.low)).collect();
+        Ok(Self { rows, lows, gains })
+    }
+
+    /// Rows in the order of an observation.
+    #[must_use]
+    pub fn rows(&self) -> &[Observed] {
+        &self.rows
+    }
+
+    /// Writes an observation; `blur`, where there is noise, gives that of each measured row.
+    pub fn write(
+        &self,
+        fitted: &FittedObservations,
+        look: &Look<'_>,
+        blur: Option<impl FnMut() -> f64>,
+        values: &mut [f32],
+    ) {
+        match self.rows.len() {
+            count if count <= USUAL_ROWS => {
+                self.write_through(fitted, look, blur, &mut [0.0; USUAL_ROWS], values)
+            }
+            count if count <= MANY_ROWS => {
+                self.write_through(fitted, look, blur, &mut [0.0; MANY_ROWS], values)
+            }
+            count => self.write_through(fitted, look, blur, &mut vec![0.0; count], values),
+        }
+    }
+
+    #[inline]
+    fn write_through(
+        &self,
+        fitted: &FittedObservations,
+        look: &Look<'_>,
+        blur: Option<impl FnMut() -> f64>,
+        zeros: &mut [f64],
+        values: &mut [f32],
+    ) {
+        let numbers = &mut zeros[..self.rows.len()];
+        fitted.read(look, numbers);
+        if let Some(mut blur) = blur {
+            // In units of half the range.
+            for ((&measured, number), gain) in fitted.measured.iter().zip(numbers.iter_mut()).zip(&self.gains)
+            {
+                *number += if measured { blur() / gain } else { 0.0 };
+            }
+        }
+        for (((value, number), low), gain) in values.iter_mut().zip(numbers).zip(&self.lows).zip(&self.gains)
+        {
+            *value = ((*number - low) * gain - 1.0).clamp(-1.0, 1.0) as f32;
+        }
+    }
+}
+
+/// A value of the plant.
+type Read = fn(&View<'_>) -> f64;
+
+/// Places of an observation in one vehicle by where their values come from: read without asking each row what kind it is.
+///
+/// A row that the vehicle lacks stands in no list: it reads as 0 in its own unit, held within its bounds, and without noise.
 #[derive(Debug, Clone, Default)]
-struct Places {
-    /// The first rows are those of [`DEFAULTS`], which no other field repeats.
-    defaults_first: bool,
-    signals: Vec<(usize, Signal)>,
+pub struct FittedObservations {
+    functions: Vec<(usize, Read)>,
+    readers: Vec<(usize, Reader)>,
     temperatures: Vec<(usize, Node)>,
     flows: Vec<(usize, Flow)>,
-    branches: Vec<(usize, Branch)>,
+    branches: Vec<(usize, usize)>,
+    /// Rows of the command.
     asked: Vec<(usize, usize)>,
+    /// Columns of an action whose options are not the vehicle's own.
+    translated: Vec<(usize, usize)>,
+    actions: Option<FittedActions>,
     speeds_ahead: Vec<(usize, usize)>,
     solar: Option<usize>,
     occupants: Option<usize>,
     time_left: Option<usize>,
+    /// Whether each row is blurred by noise.
+    measured: Vec<bool>,
 }
 
-impl Places {
-    fn of(rows: &[Observed]) -> Self {
-        let names = rows.iter().map(|row| row.name.as_str());
-        let mut places = Self {
-            defaults_first: names.clone().take(DEFAULTS.len()).eq(DEFAULTS.map(|s| s.name)),
-            ..Self::default()
-        };
-        let known = if places.defaults_first { DEFAULTS.len() } else { 0 };
-        for (place, row) in rows.iter().enumerate().skip(known) {
+impl FittedObservations {
+    /// A table's rows in a vehicle whose actions are fitted already.
+    #[must_use]
+    pub fn of(table: &ObservationTable, plant: &Plant, actions: &FittedActions) -> Self {
+        let layout = plant.layout();
+        let branches: Vec<String> =
+            (0..layout.branches.len()).map(|branch| branch_name(layout, branch)).collect();
+        let mut places =
+            Self { measured: table.rows.iter().map(Observed::measured).collect(), ..Self::default() };
+        for (place, row) in table.rows.iter().enumerate() {
             match row.source {
-                Source::Signal(signal) => match (signal.flow(), signal.node()) {
-                    (Some(flow), _) => places.flows.push((place, flow)),
-                    (_, Some(node)) => places.temperatures.push((place, node)),
-                    (None, None) => places.signals.push((place, signal)),
+                Source::Signal => match plant.signals.find(&row.name).map(|signal| signal.reader) {
+                    Some(Reader::Function(read)) => places.functions.push((place, read)),
+                    Some(Reader::Flow(flow)) => places.flows.push((place, flow)),
+                    Some(Reader::Temperature(node)) => places.temperatures.push((place, node)),
+                    Some(reader) => places.readers.push((place, reader)),
+                    None => places.measured[place] = false,
                 },
                 Source::Solar => places.solar = Some(place),
                 Source::Occupants => places.occupants = Some(place),
-                Source::Branch(branch) => places.branches.push((place, branch)),
-                Source::Asked(actuator) => places.asked.push((place, actuator)),
+                Source::Branch => {
+                    let branch = branches.iter().position(|name| *name == row.name);
+                    places.branches.extend(branch.map(|branch| (place, branch)));
+                }
+                Source::Asked(column) => match actions.plain_row(column) {
+                    Some(row) => places.asked.push((place, row)),
+                    None if actions.has(column) => places.translated.push((place, column)),
+                    None => {}
+                },
                 Source::SpeedAhead(seconds) => places.speeds_ahead.push((place, seconds)),
                 Source::TimeLeft => places.time_left = Some(place),
             }
         }
+        places.actions = Some(actions.clone()).filter(|_| !places.translated.is_empty());
         places
     }
 
-    /// Writes signal number `POSITION` of [`DEFAULTS`].
-    #[inline(always)]
-    fn read_default<const POSITION: usize>(view: &View<'_>, values: &mut [f64; DEFAULTS.len()]) {
-        if POSITION < DEFAULTS.len() {
-            values[POSITION] =
-                const { DEFAULTS[if POSITION < DEFAULTS.len() { POSITION } else { 0 }] }.read(view);
-        }
-    }
-
     /// Writes the values of all rows, which are 0 before.
+    #[inline]
     fn read(&self, look: &Look<'_>, values: &mut [f64]) {
-        const { assert!(DEFAULTS.len() <= UNROLLED, "more signals than are unrolled") };
-        if self.defaults_first {
-            let values = values.first_chunk_mut().expect("a place for each of them");
-            unrolled!(read_default(&look.view, values));
+        for &(place, read) in &self.functions {
+            values[place] = read(&look.view);
         }
-        for &(place, signal) in &self.signals {
-            values[place] = signal.read(&look.view);
+        for &(place, reader) in &self.readers {
+            values[place] = reader.read(&look.view);
         }
         for &(place, node) in &self.temperatures {
             values[place] = look.view.state.temperatures_k[node.index()] - ZERO_CELSIUS_K;
@@ -270,10 +313,15 @@ impl Places {
             }
         }
         for &(place, branch) in &self.branches {
-            values[place] = f64::from(u8::from(look.view.state.connected[branch as usize]));
+            values[place] = f64::from(u8::from(look.view.state.connected[branch]));
         }
-        for &(place, actuator) in &self.asked {
-            values[place] = f64::from(look.asked.0[actuator]);
+        for &(place, row) in &self.asked {
+            values[place] = f64::from(look.asked.0[row]);
+        }
+        if let Some(actions) = &self.actions {
+            for &(place, column) in &self.translated {
+                values[place] = f64::from(actions.value(column, look.asked));
+            }
         }
         let cycle = &look.experiment.cycle;
         for &(place, seconds) in &self.speeds_ahead {
@@ -292,138 +340,43 @@ impl Places {
     }
 }
 
-/// Selected rows.
-#[derive(Debug, Clone)]
-pub struct ObservationTable {
-    rows: Vec<Observed>,
-    /// What is shown as -1.
-    lows: Vec<f64>,
-    /// How much of the scale a unit takes.
-    gains: Vec<f64>,
-    places: Places,
-}
-
-/// More rows than there are; a test counts them.
-const ROWS: usize = 192;
-
-/// As many rows as nearly all observations have: less to set to zero each second.
-const USUAL_ROWS: usize = 64;
-
-impl ObservationTable {
-    /// Rows by name; a group stands for its rows.
-    ///
-    /// # Errors
-    /// An unknown name, a row given twice, or none at all.
-    pub fn new(names: &[String], actions: &ActionTable) -> PlantResult<Self> {
-        let all = all(actions);
-        let mut rows: Vec<Observed> = Vec::new();
-        for name in names {
-            let selected: Vec<&Observed> = all
-                .iter()
-                .filter(|row| match name.as_str() {
-                    DEFAULT_GROUP => row.default,
-                    PREVIEW_GROUP => matches!(row.source, Source::SpeedAhead(_)),
-                    _ => row.name == *name,
-                })
-                .collect();
-            if selected.is_empty() {
-                let names: Vec<&str> = all.iter().map(|row| row.name.as_str()).collect();
-                let available = format!("{DEFAULT_GROUP}, {PREVIEW_GROUP}, {}", names.join(", "));
-                return Err(PlantError::Unknown { kind: "observation", name: name.clone(), available });
-            }
-            for row in selected {
-                if rows.iter().any(|other| other.name == row.name) {
-                    return Err(PlantError::InvalidArgument {
-                        what: "observations".into(),
-                        value: format!("a list with `{}` twice", row.name),
-                        allowed: "must name each row once".into(),
-                    });
-                }
-                rows.push(row.clone());
-            }
-        }
-        if rows.is_empty() {
-            return Err(PlantError::InvalidArgument {
-                what: "observations".into(),
-                value: "empty".into(),
-                allowed: "must name at least one row".into(),
-            });
-        }
-        let lows = rows.iter().map(|row| row.low).collect();
-        let gains = rows.iter().map(|row| 2.0 / (row.high - row.low)).collect();
-        let places = Places::of(&rows);
-        Ok(Self { rows, lows, gains, places })
-    }
-
-    /// Rows in the order of an observation.
-    #[must_use]
-    pub fn rows(&self) -> &[Observed] {
-        &self.rows
-    }
-
-    /// Writes an observation; `blur`, where there is noise, gives that of each measured row.
-    pub fn write(&self, look: &Look<'_>, blur: Option<impl FnMut() -> f64>, values: &mut [f32]) {
-        if self.rows.len() <= USUAL_ROWS {
-            self.write_through::<USUAL_ROWS>(look, blur, values);
-        } else {
-            self.write_through::<ROWS>(look, blur, values);
-        }
-    }
-
-    fn write_through<const ROOM: usize>(
-        &self,
-        look: &Look<'_>,
-        blur: Option<impl FnMut() -> f64>,
-        values: &mut [f32],
-    ) {
-        let mut numbers = [0.0; ROOM];
-        let numbers = &mut numbers[..self.rows.len()];
-        self.places.read(look, numbers);
-        if let Some(mut blur) = blur {
-            // In units of half the range.
-            for ((row, number), gain) in self.rows.iter().zip(numbers.iter_mut()).zip(&self.gains) {
-                *number += if row.measured() { blur() / gain } else { 0.0 };
-            }
-        }
-        for (((value, number), low), gain) in values.iter_mut().zip(numbers).zip(&self.lows).zip(&self.gains)
-        {
-            *value = ((*number - low) * gain - 1.0).clamp(-1.0, 1.0) as f32;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rows::tests::rows_of;
+    use hp_plant::config::vehicle::architecture;
+    use std::collections::BTreeMap;
 
-    fn default_actions() -> ActionTable {
-        let names: Vec<String> = ACTUATORS[..crate::action::DEFAULT_ROWS]
-            .iter()
-            .map(|actuator| actuator.name.to_owned())
-            .collect();
-        ActionTable::new(&names).expect("built in")
+    fn tables(architectures: &[&str], names: &[&str]) -> (ActionTable, ObservationTable) {
+        let set = rows_of(architectures);
+        let actions = ActionTable::new(&["default".to_owned()], &set, &BTreeMap::new()).expect("built in");
+        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+        let observations = ObservationTable::new(&names, &set, &actions).expect("built in");
+        (actions, observations)
     }
 
     #[test]
     fn every_signal_has_a_row_and_every_row_has_bounds_and_a_meaning() {
-        let rows = all(&default_actions());
-        for signal in signals::all() {
-            assert_eq!(rows.iter().filter(|row| row.name == signal.name).count(), 1, "{}", signal.name);
+        for name in ["jeffs2019", "direct", "three-loops"] {
+            let (set, layout) = (rows_of(&[name]), architecture(name).expect("built in"));
+            let actions = ActionTable::new(&["all".to_owned()], &set, &BTreeMap::new()).expect("built in");
+            let rows = all(&set, &actions);
+            for signal in hp_plant::signals::SignalTable::of(&layout).rows() {
+                assert_eq!(rows.iter().filter(|row| row.name == signal.name).count(), 1, "{}", signal.name);
+            }
+            assert!(rows.iter().all(|row| row.low < row.high && !row.description.is_empty()));
+            assert!(rows.len() <= MANY_ROWS, "{name}: {} rows", rows.len());
         }
-        assert!(rows.iter().all(|row| row.low < row.high && !row.description.is_empty()));
-        assert!(rows.len() - crate::action::DEFAULT_ROWS + ACTUATORS.len() <= ROWS);
     }
 
     #[test]
-    fn default_signals_show_the_same_read_in_one_line_and_one_by_one() {
-        let actions = default_actions();
-        let table = |names: Vec<String>| ObservationTable::new(&names, &actions).expect("built in");
-        let straight = table(vec![DEFAULT_GROUP.to_owned()]);
-        let names: Vec<String> = straight.rows().iter().rev().map(|row| row.name.clone()).collect();
-        let one_by_one = table(names);
-        assert!(straight.places.defaults_first && !one_by_one.places.defaults_first);
+    fn rows_show_the_signals_of_their_names_in_any_order() {
+        let (actions, table) = tables(&["jeffs2019"], &[DEFAULT_GROUP]);
         let experiment = Experiment::load("jeffs2019/case1-4", None, &[]).expect("built in");
+        let fitted_actions = FittedActions::of(&actions, experiment.plant.layout());
+        let fitted = FittedObservations::of(&table, &experiment.plant, &fitted_actions);
         let mut run = experiment.start();
+        let mut signals = Vec::new();
         for _ in 0..600 {
             let disturbance = experiment.disturbance(run.steps.saturating_sub(1));
             let asked = experiment.rule_based_command(&mut run);
@@ -434,20 +387,56 @@ mod tests {
                 disturbance: &disturbance,
             };
             let look = Look { view, experiment: &experiment, asked: &asked, steps: run.steps };
-            let mut rows = [vec![0.0; straight.rows().len()], vec![0.0; straight.rows().len()]];
-            straight.write(&look, None::<fn() -> f64>, &mut rows[0]);
-            one_by_one.write(&look, None::<fn() -> f64>, &mut rows[1]);
-            rows[1].reverse();
-            assert_eq!(rows[0], rows[1], "second {}", run.steps);
+            let mut shown = vec![0.0; table.rows().len()];
+            table.write(&fitted, &look, None::<fn() -> f64>, &mut shown);
+            signals.clear();
+            experiment.look(&run, &mut signals);
+            for (row, shown) in table.rows().iter().zip(shown) {
+                let Some(column) = experiment.plant.signals.rows().iter().position(|s| s.name == row.name)
+                else {
+                    continue;
+                };
+                let gain = 2.0 / (row.high - row.low);
+                let expected = ((signals[column] - row.low) * gain - 1.0).clamp(-1.0, 1.0) as f32;
+                assert_eq!(shown, expected, "{}, second {}", row.name, run.steps);
+            }
             experiment.step(&mut run, &asked);
         }
     }
 
     #[test]
     fn default_rows_do_not_look_ahead() {
-        let table = ObservationTable::new(&[DEFAULT_GROUP.to_owned()], &default_actions()).expect("built in");
+        let (_, table) = tables(&["jeffs2019"], &[DEFAULT_GROUP]);
         let ahead = |row: &Observed| matches!(row.source, Source::SpeedAhead(_) | Source::TimeLeft);
         assert!(!table.rows().iter().any(ahead));
         assert_eq!(table.rows().len(), 56);
+    }
+
+    #[test]
+    fn a_row_that_a_car_lacks_reads_as_zero_within_its_bounds() {
+        let (actions, table) = tables(&["jeffs2019", "ptc-only"], &[DEFAULT_GROUP]);
+        let vehicle = Some("jeffs2019-ptc-only");
+        let experiment = Experiment::with_vehicle("jeffs2019/case1-4", vehicle, None, &[]).expect("built in");
+        let fitted_actions = FittedActions::of(&actions, experiment.plant.layout());
+        let fitted = FittedObservations::of(&table, &experiment.plant, &fitted_actions);
+        let run = experiment.start();
+        let disturbance = experiment.disturbance(0);
+        let view =
+            View { plant: &experiment.plant, state: &run.state, record: None, disturbance: &disturbance };
+        let look = Look { view, experiment: &experiment, asked: &Command([0.5; _]), steps: 0 };
+        let mut shown = vec![9.0; table.rows().len()];
+        table.write(&fitted, &look, Some(|| 1.0), &mut shown);
+        let lacking = |row: &&(&Observed, f32)| {
+            row.0.source == Source::Signal && experiment.plant.signals.find(&row.0.name).is_none()
+        };
+        let rows: Vec<(&Observed, f32)> = table.rows().iter().zip(shown).collect();
+        assert!(rows.iter().filter(lacking).count() > 10);
+        for (row, shown) in rows.iter().filter(lacking) {
+            let zero = 0.0_f64.clamp(row.low, row.high);
+            let expected = 2.0 * (zero - row.low) / (row.high - row.low) - 1.0;
+            assert!((f64::from(*shown) - expected).abs() < 1e-6, "{}", row.name);
+        }
+        let blurred = rows.iter().find(|(row, _)| row.name == "soc").expect("every car has it");
+        assert_eq!(blurred.1, 1.0);
     }
 }

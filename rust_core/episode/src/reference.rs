@@ -32,15 +32,17 @@ impl ReferenceConditions {
     #[must_use]
     pub fn of(experiment: &Experiment) -> Self {
         let vehicle = &experiment.plant.vehicle;
-        let pump = |circuit: &hp_plant::components::coolant_loop::LoopParameters| {
-            circuit.pump.power_w(circuit.pump.minimum_flow_kg_s)
-        };
+        let pumps_w = vehicle.loops.iter().map(|circuit| {
+            let pump = &circuit.circuit.pump;
+            pump.power_w(pump.minimum_flow_kg_s)
+        });
+        let blowers_w =
+            vehicle.cabins.iter().map(|cabin| cabin.parameters.ventilation(0.0, 0.0, 1.0).blower_power_w);
         Self {
             spin_loss_w_s_m: vehicle.transmission.spin_loss_w(REFERENCE_TEMPERATURE.kelvin(), 1.0),
-            base_load_w: vehicle.controls.auxiliary_power_w
-                + pump(&vehicle.htc.circuit)
-                + pump(&vehicle.chiller.circuit)
-                + vehicle.cabin.ventilation(0.0, 0.0, 1.0).blower_power_w,
+            base_load_w: pumps_w
+                .chain(blowers_w)
+                .fold(vehicle.controls.auxiliary_power_w, |sum, power| sum + power),
         }
     }
 }
@@ -90,7 +92,6 @@ impl ReferenceTrip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hp_plant::command::Demand;
     use hp_plant::flows::Flow;
 
     /// The definition itself: a vehicle with everything off whose battery, motor and oil are put back to 25 degC
@@ -100,19 +101,20 @@ mod tests {
         for scenario in ["jeffs2019/case1-1", "ours/hot-soak-plus35", "ours/commute-minus5"] {
             let experiment = Experiment::load(scenario, None, &[]).expect("built in");
             let plant = &experiment.plant;
-            let nodes = &plant.assembly.nodes;
-            let off =
-                Demand { blower_level: 0.0, htc_flow_kg_s: 0.0, chiller_flow_kg_s: 0.0, ..Demand::default() };
+            let layout = plant.layout();
+            let mut off = plant.ranges.idle();
+            layout.cabins.iter().for_each(|cabin| off[cabin.blower_row] = 0.0);
+            layout.loops.iter().for_each(|circuit| off[circuit.flow_row] = 0.0);
             let command = plant.ranges.encode(&off);
             let mut state = experiment.start().state;
             let mut trip = ReferenceTrip::start(state.battery);
             let conditions = ReferenceConditions::of(&experiment);
             for step in 0..experiment.cycle.duration_s() {
                 let disturbance = experiment.disturbance(step);
-                for node in [nodes.battery, nodes.motor, nodes.transmission] {
+                for node in [layout.battery, layout.motor, layout.transmission] {
                     state.temperatures_k[node.index()] = REFERENCE_TEMPERATURE.kelvin();
                 }
-                let expected = plant.step(&mut state, &command, &disturbance).flows[Flow::Chemical];
+                let expected = plant.step(&mut state, &command, &disturbance).flows[Flow::CHEMICAL];
                 let found = trip.step(plant, &conditions, &disturbance);
                 assert!(
                     (found - expected).abs() < 1e-6,

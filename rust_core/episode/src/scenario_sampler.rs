@@ -3,6 +3,8 @@
 use crate::garage::{Garage, Trip};
 use crate::kinds::EPISODES;
 use crate::random::Random;
+use hp_plant::architecture::declaration::MemberKind;
+use hp_plant::architecture::layout::Layout;
 use hp_plant::config::library;
 use hp_plant::config::{Celsius, Validate, Violation, check_range};
 use hp_plant::error::PlantResult;
@@ -108,6 +110,7 @@ pub struct Distribution {
     name: String,
     parameters: DistributionParameters,
     origin: Arc<str>,
+    vehicle: Option<Arc<str>>,
     cycles: Vec<Arc<str>>,
     template: Arc<Experiment>,
     standstills: Vec<Vec<usize>>,
@@ -116,14 +119,20 @@ pub struct Distribution {
 /// Sun rises from none at this ambient temperature to its highest at the hottest ambient [degC] (assumed).
 const SUNLESS_DEGC: f64 = -20.0;
 
+/// Name of the member that is the battery.
+fn battery_name(layout: &Layout) -> &str {
+    let battery = layout.members.iter().find(|member| member.kind == MemberKind::Battery);
+    battery.map_or("battery", |member| member.name.as_str())
+}
+
 impl Distribution {
-    /// Loads a distribution by name or path, with everything that its trips need.
+    /// Loads a distribution by name or path, with everything that its trips need; a vehicle replaces that of its scenario.
     ///
     /// # Errors
     /// Anything wrong in its file, or in the scenario and cycles that it names.
-    pub fn load(name: &str, garage: &Garage) -> PlantResult<Self> {
+    pub fn load(name: &str, vehicle: Option<&str>, garage: &Garage) -> PlantResult<Self> {
         let parameters: DistributionParameters = library::load(EPISODES, name, &[])?;
-        let template = garage.experiment(&parameters.scenario)?;
+        let template = garage.experiment(&parameters.scenario, vehicle)?;
         let mut standstills = Vec::with_capacity(parameters.cycles.len());
         for cycle in &parameters.cycles {
             let speeds_m_s = garage.cycle(&cycle.name)?.speeds_m_s().to_vec();
@@ -131,7 +140,21 @@ impl Distribution {
         }
         let origin = parameters.scenario.as_str().into();
         let cycles = parameters.cycles.iter().map(|cycle| cycle.name.as_str().into()).collect();
-        Ok(Self { name: name.to_owned(), parameters, origin, cycles, template, standstills })
+        Ok(Self {
+            name: name.to_owned(),
+            parameters,
+            origin,
+            vehicle: vehicle.map(Into::into),
+            cycles,
+            template,
+            standstills,
+        })
+    }
+
+    /// A trip that is like its trips in all that is not drawn.
+    #[must_use]
+    pub fn template(&self) -> &Arc<Experiment> {
+        &self.template
     }
 
     /// Name.
@@ -143,6 +166,7 @@ impl Distribution {
     /// Draws a trip.
     pub fn draw(&self, random: &mut Random) -> Trip {
         let ranges = &self.parameters.ranges;
+        let layout = self.template.plant.layout();
         let mut climate = self.template.climate.clone();
         let mut initial = self.template.initial.clone();
         let cycle = random.index(self.cycles.len());
@@ -163,14 +187,17 @@ impl Distribution {
         initial.soak_temperature_degc = Celsius(soak_degc);
         initial.state_of_charge_pct = random.between(ranges.charge_low_pct, ranges.charge_high_pct);
         let parked_in_sun = !from_garage && !dark;
-        initial.cabin_temperature_degc =
-            parked_in_sun.then_some(Celsius(soak_degc + ranges.parked_cabin_k_w * sun_w));
+        let parked_degc = Celsius(soak_degc + ranges.parked_cabin_k_w * sun_w);
+        for cabin in &layout.cabins {
+            initial.set(&layout.members[cabin.member].name, parked_in_sun.then_some(parked_degc));
+        }
         if let Some(kept_degc) = self.draw_kept_degc(cycle, random).filter(|&kept_degc| kept_degc > soak_degc)
         {
-            initial.battery_temperature_degc = Some(Celsius(kept_degc));
+            initial.set(battery_name(layout), Some(Celsius(kept_degc)));
         }
         Trip {
             origin: Arc::clone(&self.origin),
+            vehicle: self.vehicle.clone(),
             cycle: Arc::clone(&self.cycles[cycle]),
             climate,
             initial,
@@ -210,7 +237,7 @@ mod tests {
     use hp_trip::scenario::ScenarioParameters;
 
     fn drawn(name: &str) -> Vec<Trip> {
-        let distribution = Distribution::load(name, &Garage::default()).expect("built in");
+        let distribution = Distribution::load(name, None, &Garage::default()).expect("built in");
         let mut random = Random::seeded(3);
         (0..2000).map(|_| distribution.draw(&mut random)).collect()
     }
@@ -220,7 +247,7 @@ mod tests {
         for name in ["train-v1", "test-v0"] {
             let garage = Garage::default();
             for trip in drawn(name) {
-                let origin = garage.experiment(&trip.origin).expect("built in");
+                let origin = garage.experiment(&trip.origin, None).expect("built in");
                 let mut scenario = ScenarioParameters::clone(&origin.scenario);
                 (scenario.climate, scenario.initial) = (trip.climate, trip.initial);
                 scenario.validate().unwrap_or_else(|violation| panic!("{name}: {violation:?}"));
@@ -249,9 +276,8 @@ mod tests {
     #[test]
     fn batteries_of_fast_cycles_are_warm_enough_and_some_others_were_kept_warm() {
         let trips = drawn("train-v1");
-        let battery_degc = |trip: &Trip| {
-            trip.initial.battery_temperature_degc.unwrap_or(trip.initial.soak_temperature_degc).0
-        };
+        let battery_degc =
+            |trip: &Trip| trip.initial.of("battery").unwrap_or(trip.initial.soak_temperature_degc).0;
         let on = |name: &'static str| trips.iter().filter(move |trip| &*trip.cycle == name);
         assert!(on("wmtc-part3-twice").count() > 200 && on("artemis-urban").count() > 200);
         assert!(on("wmtc-part3-twice").all(|trip| battery_degc(trip) >= -5.0));
@@ -294,12 +320,12 @@ mod tests {
                     cycles = [{ name = \"stop-and-go.csv\" }, { name = \"nedc\" }]\n";
         let episodes = write("mine.toml", &format!("{head}{ranges}"));
         let garage = Garage::default();
-        let distribution = Distribution::load(&episodes, &garage).expect("beside it");
+        let distribution = Distribution::load(&episodes, None, &garage).expect("beside it");
         let mut random = Random::seeded(5);
         let trips: Vec<Trip> = (0..50).map(|_| distribution.draw(&mut random)).collect();
         assert!(trips.iter().all(|trip| *trip.origin == *scenario));
         assert!(trips.iter().any(|trip| *trip.cycle == *cycle));
         assert!(trips.iter().any(|trip| &*trip.cycle == "nedc"));
-        assert_eq!(garage.experiment(&scenario).expect("loaded").cycle.duration_s(), 400);
+        assert_eq!(garage.experiment(&scenario, None).expect("loaded").cycle.duration_s(), 400);
     }
 }

@@ -1,12 +1,15 @@
 //! Time that a plant step takes, measured over whole trips.
 
-use crate::action::{ActionTable, DEFAULT_ROWS, Defaults};
+use crate::action::{ActionTable, FittedActions, GROUPS};
+use crate::defaults::Defaults;
 use crate::random::Random;
-use hp_plant::command::{ACTUATORS, Command};
+use crate::rows::RowSet;
+use hp_plant::command::Command;
 use hp_plant::error::PlantResult;
 use hp_plant::plant::StepRecord;
 use hp_trip::experiment::Experiment;
 use hp_trip::run::Run;
+use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -47,15 +50,16 @@ pub fn compressor_on_steps(experiment: &Experiment, seed: Option<u64>) -> PlantR
 }
 
 fn random_commands(experiment: &Experiment, seed: u64) -> PlantResult<Vec<Command>> {
-    let names: Vec<String> = ACTUATORS[..DEFAULT_ROWS].iter().map(|row| row.name.to_owned()).collect();
-    let table = ActionTable::new(&names)?;
+    let layout = experiment.plant.layout();
+    let table = ActionTable::new(&[GROUPS[0].to_owned()], &RowSet::of([layout])?, &BTreeMap::new())?;
+    let actions = FittedActions::of(&table, layout);
     let defaults = Defaults::of(experiment);
     let mut random = Random::seeded(seed);
     let commands = (0..experiment.cycle.duration_s()).map(|second| {
         let options = table.option_counts().iter().enumerate();
         let values: Vec<f32> =
             options.map(|(column, &count)| table.value(column, random.index(count))).collect();
-        defaults.complete(&table, &values, experiment, second as f64)
+        defaults.complete(&actions, &values, experiment, second as f64)
     });
     Ok(commands.collect())
 }

@@ -2,12 +2,12 @@
 //!
 //! Each environment does what it would do alone: results do not depend on the number of threads.
 
-use crate::action;
-use crate::episode::Episode;
+use crate::episode::{Clock, Episode};
 use crate::prefetch::prefetch;
 use crate::reward::{PART_NAMES, Terms};
 use crate::setup::Source;
 use crate::threads::{Stretch, Threads};
+use hp_plant::command::ACTUATOR_PLACES;
 use hp_plant::error::{PlantError, PlantResult};
 use hp_trip::run::EndReason;
 use std::sync::{Mutex, PoisonError};
@@ -270,22 +270,21 @@ impl Vector {
     /// # Errors
     /// See [`Episode::to_bytes`].
     pub fn to_bytes(&self, index: usize) -> PlantResult<Vec<u8>> {
-        let mut bytes = self.elapsed[index].to_le_bytes().to_vec();
-        bytes.push(u8::from(self.over[index]));
-        bytes.extend(self.episodes[index].to_bytes()?);
-        Ok(bytes)
+        let clock = Clock { elapsed: self.elapsed[index], over: self.over[index] };
+        self.episodes[index].to_bytes(clock)
     }
 
-    /// Restores one environment.
+    /// Restores environments, all or none.
     ///
     /// # Errors
-    /// See [`Episode::restore`].
-    pub fn restore(&mut self, index: usize, bytes: &[u8]) -> PlantResult<()> {
-        let (clock, rest) = bytes.split_at_checked(9).unwrap_or((&[0; 9], &[]));
-        self.episodes[index].restore(rest)?;
-        self.elapsed[index] = clock[..8].iter().rev().fold(0, |sum, &byte| (sum << 8) | u64::from(byte));
-        self.over[index] = clock[8] != 0;
-        self.begun[index] = self.episodes[index].begun();
+    /// See [`Episode::read`].
+    pub fn restore(&mut self, states: &[(usize, &[u8])]) -> PlantResult<()> {
+        let read = states.iter().map(|&(index, bytes)| Ok((index, self.episodes[index].read(bytes)?)));
+        for (index, restored) in read.collect::<PlantResult<Vec<_>>>()? {
+            Clock { elapsed: self.elapsed[index], over: self.over[index] } = restored.clock;
+            self.episodes[index].resume(restored);
+            self.begun[index] = self.episodes[index].begun();
+        }
         Ok(())
     }
 
@@ -325,21 +324,8 @@ impl Vector {
         let Some(first) = self.episodes.first() else { return };
         let width = first.setup().actions.rows().len();
         match actions {
-            ActionsMut::Levels(levels) => self.on_each(levels, width, |episode, levels| {
-                if let Some(command) = episode.rule_based_command() {
-                    let rows = episode.setup().actions.rows().iter();
-                    for (level, &row) in levels.iter_mut().zip(rows) {
-                        *level = action::nearest_option(row, command.0[row]) as i64;
-                    }
-                }
-            }),
-            ActionsMut::Values(values) => self.on_each(values, width, |episode, values| {
-                if let Some(command) = episode.rule_based_command() {
-                    for (value, &row) in values.iter_mut().zip(episode.setup().actions.rows()) {
-                        *value = command.0[row];
-                    }
-                }
-            }),
+            ActionsMut::Levels(levels) => self.on_each(levels, width, Episode::rule_based_levels),
+            ActionsMut::Values(values) => self.on_each(values, width, Episode::rule_based_values),
         }
     }
 
@@ -431,19 +417,25 @@ impl Job<'_> {
     }
 
     fn step(&mut self, actions: Actions<'_>, autoreset: Autoreset, step_limit: Option<u64>) {
-        let mut values = [0.0; hp_plant::command::ACTUATOR_COUNT];
         let table = &self.episode.setup().actions;
         let width = table.rows().len();
         let place = self.index * width..(self.index + 1) * width;
-        match actions {
-            Actions::Values(all) => values[..width].copy_from_slice(&all[place]),
+        let (mut few, mut many) = ([0.0; ACTUATOR_PLACES], Vec::new());
+        let values = match actions {
+            Actions::Values(all) => &all[place],
             Actions::Levels(all) => {
-                for (column, &level) in all[place].iter().enumerate() {
-                    values[column] = table.value(column, level as usize);
+                // Cars that share an environment can have more rows together than one has.
+                let values = few.get_mut(..width).unwrap_or_else(|| {
+                    many.resize(width, 0.0);
+                    &mut many
+                });
+                for (column, (value, &level)) in values.iter_mut().zip(&all[place]).enumerate() {
+                    *value = table.value(column, level as usize);
                 }
+                &*values
             }
-        }
-        let Some(outcome) = self.episode.step(&values[..width]) else { return };
+        };
+        let Some(outcome) = self.episode.step(values) else { return };
         *self.elapsed += 1;
         *self.reward = outcome.reward;
         self.parts = outcome.parts;

@@ -32,6 +32,8 @@ const POINTS: [[f64; 5]; 20] = [
 ];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
+    println!("# condenser_ua_w_k = {:?}", support::CONDENSER_UA_W_K);
+    println!("# evaporator_ua_w_k = {:?}", support::EVAPORATOR_UA_W_K);
     for line in toml::to_string(&support::parameters())?.lines() {
         println!("# {line}");
     }

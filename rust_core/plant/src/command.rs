@@ -1,16 +1,19 @@
 //! The one way in: what any controller, rule-based, scheduled or learned, tells the plant.
 //!
-//! A command is a row of single-precision numbers in `[-1, 1]`, one for each actuator of [`ACTUATORS`]. The
+//! A command is a row of single-precision numbers in `[-1, 1]`, one for each actuator of the architecture's layout. The
 //! HPCU, schedules and agents all write this form, so none of them has a path of its own and runs with any of
 //! them can be repeated bit for bit.
 
+pub use crate::architecture::layout::ACTUATOR_PLACES;
+use crate::architecture::layout::Layout;
+pub use crate::architecture::rows::{ActuatorRow, Purpose, Scale};
 use crate::config::vehicle::VehicleParameters;
 use crate::error::{PlantError, PlantResult};
 use crate::numerics::elementary;
-use serde::{Deserialize, Serialize};
-
-/// Number of actuators.
-pub const ACTUATOR_COUNT: usize = 25;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::ops::{Index, IndexMut};
+use std::sync::Arc;
 
 /// Largest heat flow that can be requested of a connection [W].
 pub const MAXIMUM_REQUEST_W: f64 = 20_000.0;
@@ -21,236 +24,158 @@ const COMPRESSOR_OFF_BELOW: f64 = -0.9;
 /// Lowest and highest cabin set point that can be commanded [K].
 const CABIN_SET_POINT_RANGE_K: (f64, f64) = (283.15, 303.15);
 
-/// A component that can be connected to the coolant loops.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Member {
-    /// Battery.
-    Battery,
-    /// Motor and inverter.
-    Motor,
-    /// Transmission and driveline.
-    Transmission,
-    /// Front-end exchanger.
-    Ambient,
-    /// Thermal battery.
-    ThermalBattery,
-    /// Cabin.
-    Cabin,
-}
+/// Option of a connection that leaves a member to itself.
+pub const ISOLATED: f64 = 0.0;
 
-impl Member {
-    /// All members, in actuator order.
-    pub const ALL: [Self; 6] =
-        [Self::Battery, Self::Motor, Self::Transmission, Self::Ambient, Self::ThermalBattery, Self::Cabin];
-
-    /// Connections that this member has, in the order of its actuator's options.
-    #[must_use]
-    pub fn options(self) -> &'static [Connection] {
-        use Connection::{Chiller, Htc, Isolated};
-        match self {
-            Self::Battery | Self::ThermalBattery | Self::Cabin => &[Isolated, Htc, Chiller],
-            Self::Motor | Self::Transmission => &[Isolated, Chiller],
-            Self::Ambient => &[Isolated, Chiller, Htc],
-        }
-    }
-}
-
-/// Which loop a member is connected to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Connection {
-    /// To none.
-    #[default]
-    Isolated,
-    /// To the high temperature circuit.
-    Htc,
-    /// To the chiller circuit.
-    Chiller,
-}
-
-/// How an actuator reads its normalised value.
+/// A command as it crosses every interface: normalised, single precision; places without an actuator are 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Scale {
-    /// One of several options, equal parts of `[-1, 1]`.
-    Choice(&'static [&'static str]),
-    /// Linear between the ends of its range.
-    Linear,
-    /// Off below -0.9, then from lowest to highest value evenly in the logarithm.
-    OffThenLogarithmic,
-}
+pub struct Command(pub [f32; ACTUATOR_PLACES]);
 
-/// One actuator: a row of the command.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Actuator {
-    /// Name used in files, tables and action spaces.
-    pub name: &'static str,
-    /// Unit of the physical value.
-    pub unit: &'static str,
-    /// How the normalised value is read.
-    pub scale: Scale,
-    /// What it does.
-    pub description: &'static str,
-}
-
-const fn choice(name: &'static str, options: &'static [&'static str], description: &'static str) -> Actuator {
-    Actuator { name, unit: "-", scale: Scale::Choice(options), description }
-}
-
-const fn level(name: &'static str, unit: &'static str, description: &'static str) -> Actuator {
-    Actuator { name, unit, scale: Scale::Linear, description }
-}
-
-/// The actuator table; a command holds one value for each row.
-pub const ACTUATORS: [Actuator; ACTUATOR_COUNT] = [
-    choice("battery", &["isolated", "htc", "chiller"], "connection of the battery"),
-    choice("motor", &["isolated", "chiller"], "connection of motor and inverter"),
-    choice("transmission", &["isolated", "chiller"], "connection of the transmission"),
-    choice("ambient", &["isolated", "chiller", "htc"], "connection of the front-end exchanger"),
-    choice("thermal_battery", &["isolated", "htc", "chiller"], "connection of the thermal battery"),
-    choice("cabin", &["isolated", "htc", "chiller"], "connection of the cabin"),
-    choice("ptc", &["off", "allowed"], "PTC heater under its own PID on the cabin temperature"),
-    Actuator {
-        name: "compressor_power",
-        unit: "W",
-        scale: Scale::OffThenLogarithmic,
-        description: "electrical power demand of the compressor",
-    },
-    level("recirculation", "-", "recirculated share of the supply air"),
-    level("blower_level", "-", "blower level between smallest and largest air flow"),
-    level("htc_flow", "kg/s", "coolant flow demand of the high temperature circuit"),
-    level("chiller_flow", "kg/s", "coolant flow demand of the chiller circuit"),
-    level("battery_request", "W", "heat flow requested between battery and its loop"),
-    level("motor_request", "W", "heat flow requested from motor and inverter"),
-    level("transmission_request", "W", "heat flow requested from the transmission"),
-    level("ambient_request", "W", "heat flow requested between ambient and its loop"),
-    level("thermal_battery_request", "W", "heat flow requested from the thermal battery"),
-    level("cabin_request", "W", "heat flow requested between cabin and its loop"),
-    level("battery_valve", "-", "valve of the battery's branch: share of its open position"),
-    level("motor_valve", "-", "valve of the motor's branch: share of its open position"),
-    level("transmission_valve", "-", "valve of the transmission's branch: share of its open position"),
-    level("ambient_valve", "-", "valve of the front-end exchanger's branch: share of its open position"),
-    level("thermal_battery_valve", "-", "valve of the thermal battery's branch: share of its open position"),
-    level("cabin_valve", "-", "valve of the cabin's branch: share of its open position"),
-    level("cabin_set_point", "K", "cabin temperature that the PTC's PID aims at"),
-];
-
-const PTC: usize = 6;
-/// Row of the compressor demand.
-pub const COMPRESSOR: usize = 7;
-/// Row of the recirculated share.
-pub const RECIRCULATION: usize = 8;
-/// Row of the blower level.
-pub const BLOWER: usize = 9;
-const HTC_FLOW: usize = 10;
-const CHILLER_FLOW: usize = 11;
-/// First of the six rows of requested heat flows, by member.
-pub const REQUESTS: usize = 12;
-const VALVES: usize = 18;
-const CABIN_SET_POINT: usize = 24;
-
-/// A command as it crosses every interface: normalised, single precision.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Command(pub [f32; ACTUATOR_COUNT]);
-
-/// A command in physical units.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Demand {
-    /// Connection asked for, by member.
-    pub connections: [Connection; 6],
-    /// Whether the PTC may heat.
-    pub ptc_allowed: bool,
-    /// Electrical power of the compressor; 0 is off [W].
-    pub compressor_power_w: f64,
-    /// Recirculated share of the supply air [-].
-    pub recirculation: f64,
-    /// Blower level [-].
-    pub blower_level: f64,
-    /// Coolant flow of the HTC [kg/s].
-    pub htc_flow_kg_s: f64,
-    /// Coolant flow of the chiller circuit [kg/s].
-    pub chiller_flow_kg_s: f64,
-    /// Heat flow requested, by member [W].
-    pub requests_w: [f64; 6],
-    /// Valve position as a share of "open", by member [-].
-    pub valves: [f64; 6],
-    /// Cabin temperature for the PTC's PID [K].
-    pub cabin_set_point_k: f64,
-}
-
-impl Default for Demand {
-    /// Everything isolated and off, valves open, requests unlimited, 22 degC.
+impl Default for Command {
     fn default() -> Self {
-        Self {
-            connections: [Connection::Isolated; 6],
-            ptc_allowed: false,
-            compressor_power_w: 0.0,
-            recirculation: 0.0,
-            blower_level: 1.0,
-            htc_flow_kg_s: 0.25,
-            chiller_flow_kg_s: 0.25,
-            requests_w: [MAXIMUM_REQUEST_W; 6],
-            valves: [1.0; 6],
-            cabin_set_point_k: 295.15,
-        }
+        Self([0.0; ACTUATOR_PLACES])
     }
 }
 
-/// Row of an actuator.
-///
-/// # Errors
-/// There is none of that name.
-pub fn actuator(name: &str) -> PlantResult<usize> {
-    ACTUATORS.iter().position(|actuator| actuator.name == name).ok_or_else(|| PlantError::Unknown {
-        kind: "actuator",
-        name: name.to_owned(),
-        available: ACTUATORS.map(|actuator| actuator.name).join(", "),
-    })
+/// Without the zeros at the end.
+impl Serialize for Command {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let used = self.0.iter().rposition(|&value| value != 0.0).map_or(0, |last| last + 1);
+        self.0[..used].serialize(serializer)
+    }
 }
 
-/// Physical ranges of the actuators of one vehicle.
+impl<'de> Deserialize<'de> for Command {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let values = Vec::<f32>::deserialize(deserializer)?;
+        let mut command = Self::default();
+        let Some(used) = command.0.get_mut(..values.len()) else {
+            return Err(D::Error::custom(format!(
+                "{} actuators, but there are {ACTUATOR_PLACES}",
+                values.len()
+            )));
+        };
+        used.copy_from_slice(&values);
+        Ok(command)
+    }
+}
+
+/// A command in physical units, a value a row; an option is its number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Demand(pub [f64; ACTUATOR_PLACES]);
+
+impl Index<usize> for Demand {
+    type Output = f64;
+    #[inline(always)]
+    fn index(&self, row: usize) -> &f64 {
+        &self.0[row]
+    }
+}
+
+impl IndexMut<usize> for Demand {
+    #[inline(always)]
+    fn index_mut(&mut self, row: usize) -> &mut f64 {
+        &mut self.0[row]
+    }
+}
+
+/// The actuators of one vehicle with their physical ranges.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ActuatorRanges {
-    low: [f64; ACTUATOR_COUNT],
-    high: [f64; ACTUATOR_COUNT],
+    layout: Arc<Layout>,
+    low: [f64; ACTUATOR_PLACES],
+    high: [f64; ACTUATOR_PLACES],
     /// Physical values at -1 and between -1 and 1. An option lies in the middle of its part of the range: it is half a
     /// part away from its ends.
-    origin: [f64; ACTUATOR_COUNT],
-    width: [f64; ACTUATOR_COUNT],
+    origin: [f64; ACTUATOR_PLACES],
+    width: [f64; ACTUATOR_PLACES],
+    /// Whether a value is the number of an option.
+    chosen: [bool; ACTUATOR_PLACES],
+    /// The same as what is taken of a value's fraction, what is added then, and what it does not exceed: no branches.
+    whole: [f64; ACTUATOR_PLACES],
+    start: [f64; ACTUATOR_PLACES],
+    last: [f64; ACTUATOR_PLACES],
     /// Natural logarithm of the compressor's highest over its lowest power.
     compressor_logarithm: f64,
 }
 
+/// Lowest and highest physical value of an actuator of a vehicle.
+fn range(vehicle: &VehicleParameters, row: &ActuatorRow) -> (f64, f64) {
+    match row.purpose {
+        Purpose::Connection(_) | Purpose::Heater(_) | Purpose::ExchangerValve(_) => {
+            (0.0, (row.options().len() - 1) as f64)
+        }
+        Purpose::Compressor => vehicle.refrigeration.as_ref().map_or((1.0, 1.0), |refrigeration| {
+            (refrigeration.compressor.minimum_power_w, refrigeration.compressor.maximum_power_w)
+        }),
+        Purpose::Recirculation(cabin) => (0.0, vehicle.cabins[cabin].parameters.maximum_recirculation),
+        Purpose::Blower(_) | Purpose::Valve(_) => (0.0, 1.0),
+        Purpose::LoopFlow(circuit) => {
+            let pump = &vehicle.loops[circuit].circuit.pump;
+            (pump.minimum_flow_kg_s, pump.maximum_flow_kg_s)
+        }
+        Purpose::Request(_) => (0.0, MAXIMUM_REQUEST_W),
+        Purpose::CabinSetPoint => CABIN_SET_POINT_RANGE_K,
+    }
+}
+
 impl ActuatorRanges {
-    /// Ranges of a vehicle.
+    /// Actuators of a vehicle.
     #[must_use]
     pub fn of(vehicle: &VehicleParameters) -> Self {
-        let compressor = &vehicle.refrigeration.compressor;
-        let mut ranges = [(0.0, 1.0); ACTUATOR_COUNT];
-        for (range, actuator) in ranges.iter_mut().zip(&ACTUATORS) {
-            if let Scale::Choice(options) = actuator.scale {
-                *range = (0.0, (options.len() - 1) as f64);
+        let layout = Arc::clone(&vehicle.layout);
+        let mut ranges = Self {
+            low: [0.0; ACTUATOR_PLACES],
+            high: [0.0; ACTUATOR_PLACES],
+            // Where there is no actuator, 0 stands for 0.
+            origin: [-0.5; ACTUATOR_PLACES],
+            width: [1.0; ACTUATOR_PLACES],
+            chosen: [false; ACTUATOR_PLACES],
+            whole: [0.0; ACTUATOR_PLACES],
+            start: [-0.5; ACTUATOR_PLACES],
+            last: [f64::INFINITY; ACTUATOR_PLACES],
+            compressor_logarithm: 0.0,
+            layout: Arc::clone(&layout),
+        };
+        for (row, actuator) in layout.actuators.iter().enumerate() {
+            let (low, high) = range(vehicle, actuator);
+            ranges.chosen[row] = matches!(actuator.scale, Scale::Choice(_));
+            let half = if ranges.chosen[row] { 0.5 } else { 0.0 };
+            (ranges.low[row], ranges.high[row]) = (low, high);
+            (ranges.whole[row], ranges.start[row], ranges.last[row]) =
+                if ranges.chosen[row] { (1.0, 0.0, high) } else { (0.0, low, f64::INFINITY) };
+            ranges.origin[row] = low - half;
+            // A range of one value has a width too, or nothing could be divided by it.
+            ranges.width[row] = (high - low + 2.0 * half).max(f64::MIN_POSITIVE);
+            if actuator.scale == Scale::OffThenLogarithmic {
+                ranges.compressor_logarithm = (high / low).ln();
             }
         }
-        ranges[COMPRESSOR] = (compressor.minimum_power_w, compressor.maximum_power_w);
-        for (row, pump) in
-            [(HTC_FLOW, &vehicle.htc.circuit.pump), (CHILLER_FLOW, &vehicle.chiller.circuit.pump)]
-        {
-            ranges[row] = (pump.minimum_flow_kg_s, pump.maximum_flow_kg_s);
-        }
-        for range in &mut ranges[REQUESTS..REQUESTS + 6] {
-            *range = (0.0, MAXIMUM_REQUEST_W);
-        }
-        ranges[RECIRCULATION] = (0.0, vehicle.cabin.maximum_recirculation);
-        ranges[CABIN_SET_POINT] = CABIN_SET_POINT_RANGE_K;
-        let margin = |row: usize| if matches!(ACTUATORS[row].scale, Scale::Choice(_)) { 0.5 } else { 0.0 };
-        Self {
-            low: ranges.map(|(low, _)| low),
-            high: ranges.map(|(_, high)| high),
-            origin: std::array::from_fn(|row| ranges[row].0 - margin(row)),
-            width: std::array::from_fn(|row| ranges[row].1 - ranges[row].0 + 2.0 * margin(row)),
-            compressor_logarithm: (ranges[COMPRESSOR].1 / ranges[COMPRESSOR].0).ln(),
-        }
+        ranges
+    }
+
+    /// The actuators, a row each.
+    #[must_use]
+    pub fn rows(&self) -> &[ActuatorRow] {
+        &self.layout.actuators
+    }
+
+    /// Number of actuators.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.layout.actuators.len()
+    }
+
+    /// Row of an actuator.
+    ///
+    /// # Errors
+    /// There is none of that name.
+    pub fn row(&self, name: &str) -> PlantResult<usize> {
+        self.layout.actuator(name).ok_or_else(|| PlantError::Unknown {
+            kind: "actuator",
+            name: name.to_owned(),
+            available: self.rows().iter().map(|row| row.name.as_str()).collect::<Vec<_>>().join(", "),
+        })
     }
 
     /// Lowest and highest physical value of an actuator.
@@ -259,30 +184,32 @@ impl ActuatorRanges {
         (self.low[actuator], self.high[actuator])
     }
 
+    fn is_compressor(&self, actuator: usize) -> bool {
+        self.layout.compressor_row == Some(actuator)
+    }
+
     /// Normalised value of a physical one; values outside the range are held at its ends.
     #[must_use]
     pub fn normalise(&self, actuator: usize, value: f64) -> f32 {
-        match ACTUATORS[actuator].scale {
-            Scale::OffThenLogarithmic => self.normalised_compressor(value),
-            Scale::Choice(_) | Scale::Linear => {
-                normalised(value, self.origin[actuator], self.width[actuator])
-            }
+        if self.is_compressor(actuator) {
+            self.normalised_compressor(actuator, value)
+        } else {
+            normalised(value, self.origin[actuator], self.width[actuator])
         }
     }
 
-    /// Physical value of a normalised one.
+    /// Physical value of a normalised one; an option is its number.
     #[must_use]
     pub fn physical(&self, actuator: usize, normalised: f32) -> f64 {
-        let share = share(normalised);
-        match ACTUATORS[actuator].scale {
-            Scale::Choice(options) => chosen(share, options.len()) as f64,
-            Scale::Linear => self.origin[actuator] + share * self.width[actuator],
-            Scale::OffThenLogarithmic => self.compressor(normalised),
+        if self.is_compressor(actuator) {
+            return self.compressor(actuator, normalised);
         }
+        let value = share(normalised) * self.width[actuator];
+        if self.chosen[actuator] { option(value, self.high[actuator]) } else { self.origin[actuator] + value }
     }
 
-    fn normalised_compressor(&self, value: f64) -> f32 {
-        let low = self.low[COMPRESSOR];
+    fn normalised_compressor(&self, row: usize, value: f64) -> f32 {
+        let low = self.low[row];
         if value < low {
             return -1.0;
         }
@@ -290,37 +217,66 @@ impl ActuatorRanges {
         (COMPRESSOR_OFF_BELOW + (1.0 - COMPRESSOR_OFF_BELOW) * share).clamp(-1.0, 1.0) as f32
     }
 
-    fn compressor(&self, normalised: f32) -> f64 {
+    fn compressor(&self, row: usize, normalised: f32) -> f64 {
         let x = f64::from(normalised).clamp(-1.0, 1.0);
         // Half a single-precision step below the threshold still counts as the lowest power.
         if x < COMPRESSOR_OFF_BELOW - 1e-6 {
             return 0.0;
         }
         let share = ((x - COMPRESSOR_OFF_BELOW) / (1.0 - COMPRESSOR_OFF_BELOW)).max(0.0);
-        self.low[COMPRESSOR] * elementary::exp(share * self.compressor_logarithm)
+        self.low[row] * elementary::exp(share * self.compressor_logarithm)
+    }
+
+    /// Everything isolated, closed and off, valves of branches open, requests unlimited, 22 degC.
+    #[must_use]
+    pub fn idle(&self) -> Demand {
+        let mut demand = Demand([0.0; ACTUATOR_PLACES]);
+        for (row, actuator) in self.rows().iter().enumerate() {
+            demand[row] = match actuator.purpose {
+                Purpose::Blower(_) | Purpose::Valve(_) => 1.0,
+                Purpose::LoopFlow(_) => 0.25,
+                Purpose::Request(_) => MAXIMUM_REQUEST_W,
+                Purpose::CabinSetPoint => 295.15,
+                _ => 0.0,
+            };
+        }
+        demand
     }
 
     /// The command for a demand.
     #[must_use]
+    #[inline]
     pub fn encode(&self, demand: &Demand) -> Command {
-        let mut values = [0.0; ACTUATOR_COUNT];
-        for (i, member) in Member::ALL.into_iter().enumerate() {
-            let asked = demand.connections[i];
-            values[i] = member.options().iter().position(|&option| option == asked).unwrap_or(0) as f64;
-        }
-        values[PTC] = f64::from(u8::from(demand.ptc_allowed));
-        values[RECIRCULATION] = demand.recirculation;
-        values[BLOWER] = demand.blower_level;
-        values[HTC_FLOW] = demand.htc_flow_kg_s;
-        values[CHILLER_FLOW] = demand.chiller_flow_kg_s;
-        values[REQUESTS..REQUESTS + 6].copy_from_slice(&demand.requests_w);
-        values[VALVES..VALVES + 6].copy_from_slice(&demand.valves);
-        values[CABIN_SET_POINT] = demand.cabin_set_point_k;
         // All rows alike, so that several are worked out at once; the compressor's is replaced.
-        let mut command =
-            std::array::from_fn(|row| normalised(values[row], self.origin[row], self.width[row]));
-        command[COMPRESSOR] = self.normalised_compressor(demand.compressor_power_w);
-        Command(command)
+        let mut command = Command::default();
+        for row in 0..self.count() {
+            command.0[row] = normalised(demand.0[row], self.origin[row], self.width[row]);
+        }
+        if let Some(row) = self.layout.compressor_row {
+            command.0[row] = self.normalised_compressor(row, demand[row]);
+        }
+        command
+    }
+
+    /// The demand that a command stands for.
+    #[must_use]
+    pub fn decode(&self, command: &Command) -> Demand {
+        self.decoded(command, self.count(), self.layout.compressor_row)
+    }
+
+    /// [`Self::decode`] for so many actuators, perhaps known while compiling.
+    #[inline(always)]
+    pub(crate) fn decoded(&self, command: &Command, count: usize, compressor_row: Option<usize>) -> Demand {
+        let mut demand = Demand([0.0; ACTUATOR_PLACES]);
+        for row in 0..count.next_multiple_of(4).min(ACTUATOR_PLACES) {
+            let value = share(command.0[row]) * self.width[row];
+            let value = value - self.whole[row] * (value - value.floor());
+            demand.0[row] = self.start[row] + value.min(self.last[row]);
+        }
+        if let Some(row) = compressor_row {
+            demand.0[row] = self.compressor(row, command.0[row]);
+        }
+        demand
     }
 
     /// Sets one actuator of a command to a physical value.
@@ -328,15 +284,15 @@ impl ActuatorRanges {
     /// # Errors
     /// No such actuator, or a value outside its range.
     pub fn set(&self, command: &mut Command, name: &str, value: f64) -> PlantResult<()> {
-        let row = actuator(name)?;
+        let row = self.row(name)?;
         let (low, high) = self.range(row);
-        let off = ACTUATORS[row].scale == Scale::OffThenLogarithmic && value == 0.0;
+        let off = self.is_compressor(row) && value == 0.0;
         if !(off || (low..=high).contains(&value)) {
-            let zero = if ACTUATORS[row].scale == Scale::OffThenLogarithmic { "0 (off) or " } else { "" };
+            let zero = if self.is_compressor(row) { "0 (off) or " } else { "" };
             return Err(PlantError::InvalidArgument {
                 what: name.to_owned(),
                 value: value.to_string(),
-                allowed: format!("must be {zero}between {low} and {high} {}", ACTUATORS[row].unit),
+                allowed: format!("must be {zero}between {low} and {high} {}", self.rows()[row].unit),
             });
         }
         command.0[row] = self.normalise(row, value);
@@ -348,17 +304,14 @@ impl ActuatorRanges {
     /// # Errors
     /// No such actuator or option, or the actuator has no options.
     pub fn choose(&self, command: &mut Command, name: &str, option: &str) -> PlantResult<()> {
-        let row = actuator(name)?;
-        let options = match ACTUATORS[row].scale {
-            Scale::Choice(options) => options,
-            Scale::Linear | Scale::OffThenLogarithmic => &[],
-        };
+        let row = self.row(name)?;
+        let options = self.rows()[row].options();
         let chosen =
-            options.iter().position(|known| *known == option).ok_or_else(|| PlantError::InvalidArgument {
+            options.iter().position(|known| known == option).ok_or_else(|| PlantError::InvalidArgument {
                 what: name.to_owned(),
                 value: format!("`{option}`"),
                 allowed: if options.is_empty() {
-                    format!("must be a number of {}", ACTUATORS[row].unit)
+                    format!("must be a number of {}", self.rows()[row].unit)
                 } else {
                     format!("must be one of {}", options.join(", "))
                 },
@@ -366,45 +319,22 @@ impl ActuatorRanges {
         command.0[row] = self.normalise(row, chosen as f64);
         Ok(())
     }
-
-    /// The demand that a command stands for.
-    #[must_use]
-    pub fn decode(&self, command: &Command) -> Demand {
-        let shares = command.0.map(share);
-        let values: [f64; ACTUATOR_COUNT] =
-            std::array::from_fn(|row| self.origin[row] + shares[row] * self.width[row]);
-        Demand {
-            connections: std::array::from_fn(|i| {
-                let options = Member::ALL[i].options();
-                options[chosen(shares[i], options.len())]
-            }),
-            ptc_allowed: chosen(shares[PTC], 2) == 1,
-            compressor_power_w: self.compressor(command.0[COMPRESSOR]),
-            recirculation: values[RECIRCULATION],
-            blower_level: values[BLOWER],
-            htc_flow_kg_s: values[HTC_FLOW],
-            chiller_flow_kg_s: values[CHILLER_FLOW],
-            requests_w: std::array::from_fn(|i| values[REQUESTS + i]),
-            valves: std::array::from_fn(|i| values[VALVES + i]),
-            cabin_set_point_k: values[CABIN_SET_POINT],
-        }
-    }
 }
 
 /// Normalised value of a physical one that is `origin` at -1 and `width` more at 1.
-#[inline]
+#[inline(always)]
 fn normalised(value: f64, origin: f64, width: f64) -> f32 {
     (2.0 * (value - origin) / width - 1.0).clamp(-1.0, 1.0) as f32
 }
 
 /// Position of a normalised value between -1 and 1.
-#[inline]
+#[inline(always)]
 fn share(normalised: f32) -> f64 {
     0.5 * (f64::from(normalised).clamp(-1.0, 1.0) + 1.0)
 }
 
-/// Option that a position between 0 and 1 lies in.
-#[inline]
-fn chosen(share: f64, options: usize) -> usize {
-    ((share * options as f64) as usize).min(options - 1)
+/// Number of the option that a value lies in.
+#[inline(always)]
+fn option(value: f64, last: f64) -> f64 {
+    value.floor().min(last)
 }

@@ -45,6 +45,14 @@ pub enum PlantError {
         /// What would have been accepted, as a sentence fragment ("must be ...").
         allowed: String,
     },
+    /// A saved state is damaged, or of something else.
+    #[error("state is {value}, but {allowed}")]
+    State {
+        /// What it is.
+        value: String,
+        /// What would have been accepted, as a sentence fragment ("must be ...").
+        allowed: String,
+    },
 }
 
 /// Result of this crate.

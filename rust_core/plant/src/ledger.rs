@@ -3,7 +3,8 @@
 //! It counts boundary flows and stored energies only (all others count nothing, unless they are no numbers). It never
 //! sees the network's matrix or the refrigerant solve, so an error in one of those shows up here.
 
-use crate::flows::{FLOW_COUNT, Flow, Flows};
+use crate::architecture::layout::{FLOW_PLACES, Layout};
+use crate::flows::{Crossing, Flows};
 use serde::{Deserialize, Serialize};
 
 /// Energy stored in the vehicle, relative to fixed references [J].
@@ -19,45 +20,12 @@ pub struct StoredEnergyChange {
     pub heat_j: f64,
 }
 
-/// Flows that enter the vehicle.
-pub const INFLOWS: [Flow; 4] = [Flow::Solar, Flow::Occupants, Flow::AmbientChiller, Flow::Unserved];
-
-/// Flows that leave the vehicle. Air enters at ambient temperature, so the exhaust is counted relative to it.
-pub const OUTFLOWS: [Flow; 17] = [
-    Flow::Drag,
-    Flow::Rolling,
-    Flow::FrictionBrake,
-    Flow::Auxiliary,
-    Flow::Fan,
-    Flow::CompressorLoss,
-    Flow::HtcSupplyHose,
-    Flow::HtcReturnHose,
-    Flow::ChillerSupplyHose,
-    Flow::ChillerReturnHose,
-    Flow::AmbientHtc,
-    Flow::BatteryAmbient,
-    Flow::MotorAmbient,
-    Flow::TransmissionAmbient,
-    Flow::ThermalBatteryAmbient,
-    Flow::PanelAmbient,
-    Flow::ExhaustAmbient,
-];
-
-/// How each flow counts: -1 enters, 1 leaves, 0 does not cross the boundary.
-const CROSSINGS: [f64; FLOW_COUNT] = {
-    let mut crossings = [0.0; FLOW_COUNT];
-    let mut place = 0;
-    while place < INFLOWS.len() {
-        crossings[INFLOWS[place] as usize] = -1.0;
-        place += 1;
-    }
-    place = 0;
-    while place < OUTFLOWS.len() {
-        crossings[OUTFLOWS[place] as usize] = 1.0;
-        place += 1;
-    }
-    crossings
-};
+/// How each flow of a vehicle counts: -1 enters, 1 leaves, 0 does not cross the boundary. Air enters at ambient temperature,
+/// so the exhaust is counted relative to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ledger {
+    crossings: [f64; FLOW_PLACES],
+}
 
 /// So many flows are summed up side by side.
 const SIDE_BY_SIDE: usize = 4;
@@ -82,32 +50,51 @@ impl LedgerEntry {
     }
 }
 
-/// Balances a step.
-#[must_use]
-pub fn balance(flows: &Flows, stored: &StoredEnergyChange, step_s: f64) -> LedgerEntry {
-    let stores_w: [f64; SIDE_BY_SIDE] =
-        [stored.kinetic_j, stored.chemical_j, stored.polarisation_j, stored.heat_j]
-            .map(|joule| joule / step_s);
-    let mut residuals_w = stores_w;
-    let mut scales_w = stores_w.map(f64::abs);
-    let (flows, last_flows) = flows.values().as_chunks::<SIDE_BY_SIDE>();
-    let (crossings, last_crossings) = CROSSINGS.as_chunks::<SIDE_BY_SIDE>();
-    for (flows, crossings) in flows.iter().zip(crossings) {
-        for place in 0..SIDE_BY_SIDE {
-            let crossing_w = flows[place] * crossings[place];
-            residuals_w[place] += crossing_w;
-            scales_w[place] = scales_w[place].max(crossing_w.abs());
+impl Ledger {
+    /// The ledger of a layout.
+    #[must_use]
+    pub fn of(layout: &Layout) -> Self {
+        let mut crossings = [0.0; FLOW_PLACES];
+        for row in &layout.flows {
+            crossings[row.flow.index()] = match row.crossing {
+                Crossing::Enters => -1.0,
+                Crossing::Leaves => 1.0,
+                Crossing::Inside => 0.0,
+            };
         }
+        Self { crossings }
     }
-    for (place, (flow, crossing)) in last_flows.iter().zip(last_crossings).enumerate() {
-        residuals_w[place] += flow * crossing;
-        scales_w[place] = scales_w[place].max((flow * crossing).abs());
-    }
-    let pair = |values: [f64; SIDE_BY_SIDE], join: fn(f64, f64) -> f64| {
-        join(join(values[0], values[1]), join(values[2], values[3]))
-    };
-    LedgerEntry {
-        residual_w: pair(residuals_w, |a, b| a + b),
-        scale_w: pair(scales_w, f64::max).max(SMALLEST_POWER_W),
+
+    /// Balances a step with so many flows, perhaps known while compiling.
+    #[must_use]
+    #[inline(always)]
+    pub fn balance(
+        &self,
+        count: usize,
+        flows: &Flows,
+        stored: &StoredEnergyChange,
+        step_s: f64,
+    ) -> LedgerEntry {
+        let stores_w: [f64; SIDE_BY_SIDE] =
+            [stored.kinetic_j, stored.chemical_j, stored.polarisation_j, stored.heat_j]
+                .map(|joule| joule / step_s);
+        let mut residuals_w = stores_w;
+        let mut scales_w = stores_w.map(f64::abs);
+        let (flows, _) = flows.values().as_chunks::<SIDE_BY_SIDE>();
+        let (crossings, _) = self.crossings.as_chunks::<SIDE_BY_SIDE>();
+        for group in 0..count.div_ceil(SIDE_BY_SIDE).min(FLOW_PLACES / SIDE_BY_SIDE) {
+            for place in 0..SIDE_BY_SIDE {
+                let crossing_w = flows[group][place] * crossings[group][place];
+                residuals_w[place] += crossing_w;
+                scales_w[place] = scales_w[place].max(crossing_w.abs());
+            }
+        }
+        let pair = |values: [f64; SIDE_BY_SIDE], join: fn(f64, f64) -> f64| {
+            join(join(values[0], values[1]), join(values[2], values[3]))
+        };
+        LedgerEntry {
+            residual_w: pair(residuals_w, |a, b| a + b),
+            scale_w: pair(scales_w, f64::max).max(SMALLEST_POWER_W),
+        }
     }
 }

@@ -1,50 +1,42 @@
 //! The vehicle: one entry, [`Plant::step_into`] ([`Plant::step`] returns what it writes), pure and deterministic.
 
-use crate::circuits::assembly::{Assembly, LinkConditions, NODES};
-use crate::circuits::branches::{BRANCH_COUNT, Branch, BranchTable};
+use crate::architecture::declaration::{Level, MemberKind};
+use crate::architecture::indices::Indices;
+use crate::architecture::layout::{
+    BranchSide, CABIN_PLACES, CabinLayout, FRONT_END_PLACES, HeaterTarget, LOOP_PLACES, Layout, WEIGHT_PLACES,
+};
+use crate::circuits::branches::{self, BranchTable, BranchTemperatures};
+use crate::circuits::exchangers::{self, ExchangerTable, Sides, Surroundings};
 use crate::circuits::refrigeration_cycle::RefrigerationCycle;
 use crate::circuits::refrigeration_loop::{
-    CompressorAllowance, Limit, LoopBoundary, LoopResult, RefrigerationState, SupplyLimit,
+    CompressorAllowance, Limit, LoopBoundary, LoopResult, RefrigerationState,
 };
-use crate::command::{ActuatorRanges, Command};
-use crate::components::battery::{Battery, BatteryStep, CircuitStep, PowerLimits};
+use crate::command::{ActuatorRanges, Command, Demand};
+use crate::components::battery::{Battery, BatteryState, BatteryStep, CircuitStep, PowerLimits};
 use crate::components::exhaust_recovery::{ExhaustRecovery, RecoveryTemperatures};
 use crate::components::pid::ResetPid;
-use crate::components::powertrain::Powertrain;
+use crate::components::powertrain::{Powertrain, PowertrainFlow};
+use crate::components::pump::PumpState;
+use crate::components::thermal_switch::ThermalSwitches;
 use crate::config::initial::InitialParameters;
-use crate::config::kinds::VEHICLE;
-use crate::config::library::{self, Override};
+use crate::config::library::Override;
 use crate::config::vehicle::VehicleParameters;
-use crate::control::thermal_switch::ThermalSwitches;
+use crate::controls::{self, Controls, Period, Sight};
 use crate::error::PlantResult;
 use crate::flows::{Flow, Flows};
-use crate::ledger::{self, LedgerEntry, StoredEnergyChange};
-use crate::media::air::AirProperties;
+use crate::ledger::{Ledger, LedgerEntry, StoredEnergyChange};
 use crate::media::refrigerant::RefrigerantTable;
-use crate::numerics::thermal_network::{MAXIMUM_NODES, NodeValues};
+use crate::network::built_in::with_shape;
+use crate::network::conditions::{CabinConditions, Conditions, Constants};
+use crate::network::planned::Planned;
+use crate::network::shape::{Given, Shape, each};
+use crate::network::{Forecast, INLET_PLACES, Network};
+use crate::numerics::thermal_network::{MAXIMUM_NODES, NodeValues, heat_gained_j};
+use crate::signals::SignalTable;
 use crate::state::State;
-use controls::{ControlGains, Period};
+use crate::step_parameters::StepParameters;
+pub use crate::surroundings::{CONTROL_PERIOD_S, Disturbance};
 use serde::{Deserialize, Serialize};
-
-mod controls;
-
-/// Period of all controllers and of a plant step [s].
-pub const CONTROL_PERIOD_S: f64 = 1.0;
-
-/// What the surroundings do during a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Disturbance {
-    /// Vehicle speed at the beginning [m/s].
-    pub start_speed_m_s: f64,
-    /// Vehicle speed at the end [m/s].
-    pub end_speed_m_s: f64,
-    /// Ambient air.
-    pub air: AirProperties,
-    /// Solar heat into the cabin [W].
-    pub solar_gain_w: f64,
-    /// People in the cabin.
-    pub occupants: f64,
-}
 
 /// What happened during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -77,18 +69,23 @@ pub struct StepRecord {
 pub struct Plant {
     /// Parameters.
     pub vehicle: VehicleParameters,
-    /// Physical ranges of the actuators.
+    /// Actuators with their physical ranges.
     pub ranges: ActuatorRanges,
+    /// What can be seen.
+    pub signals: SignalTable,
     /// Battery with its tables.
     pub battery: Battery,
     /// Thermal network.
-    pub assembly: Assembly,
+    pub network: Network,
     /// Refrigerant loop.
-    pub refrigeration: RefrigerationCycle,
-    /// Refrigerant properties.
-    pub refrigerant: RefrigerantTable,
-    branches: BranchTable,
-    gains: ControlGains,
+    pub refrigeration: Option<RefrigerationCycle>,
+    /// Exchangers of the refrigerant loop.
+    pub exchangers: ExchangerTable,
+    /// Coolant branches.
+    pub branches: BranchTable,
+    controls: Controls,
+    parameters: StepParameters,
+    ledger: Ledger,
     substeps: u32,
 }
 
@@ -104,33 +101,67 @@ pub enum Stage {
     Ledger,
 }
 
+/// A piece of a step: the speeds that it runs through.
+#[derive(Debug, Clone, Copy)]
+struct Segment {
+    step_s: f64,
+    start_m_s: f64,
+    end_m_s: f64,
+    speed_m_s: f64,
+}
+
+/// Traction of a segment.
+struct Drive<'a> {
+    powertrain: Powertrain<'a>,
+    wheel_w: f64,
+    /// Power flow while driving; while braking it follows later, from what the battery can take.
+    driving: Option<PowertrainFlow>,
+}
+
 impl Plant {
     /// Prepares a vehicle.
     ///
     /// # Errors
     /// The refrigerant is unknown or its table unusable with these parameters.
     pub fn new(vehicle: VehicleParameters) -> PlantResult<Self> {
-        let table = RefrigerantTable::load(&vehicle.refrigerant)?;
+        let layout = std::sync::Arc::clone(&vehicle.layout);
+        let refrigeration = match (&vehicle.refrigeration, &vehicle.refrigerant) {
+            (Some(parameters), Some(refrigerant)) => {
+                let table = RefrigerantTable::load(refrigerant)?;
+                let cycle = RefrigerationCycle::new(parameters.clone(), table)
+                    .map_err(|violation| violation.within("refrigeration").in_file("vehicle"))?;
+                Some(cycle)
+            }
+            _ => None,
+        };
         Ok(Self {
             ranges: ActuatorRanges::of(&vehicle),
+            signals: SignalTable::of(&layout),
             battery: Battery::new(&vehicle.battery),
-            assembly: Assembly::of(&vehicle),
-            refrigeration: RefrigerationCycle::new(vehicle.refrigeration.clone(), table.clone())
-                .map_err(|violation| violation.within("refrigeration").in_file("vehicle"))?,
-            refrigerant: table,
+            network: network(&vehicle),
+            refrigeration,
+            exchangers: ExchangerTable::of(&vehicle),
             branches: BranchTable::of(&vehicle),
-            gains: ControlGains::of(&vehicle),
+            controls: Controls::of(&vehicle),
+            parameters: StepParameters::of(&vehicle),
+            ledger: Ledger::of(&layout),
             vehicle,
             substeps: 1,
         })
     }
 
-    /// Loads a vehicle by name with overrides.
+    /// Loads a vehicle by name or path with overrides.
     ///
     /// # Errors
-    /// See [`library::load`].
+    /// See [`VehicleParameters::load`].
     pub fn load(vehicle: &str, overrides: &[Override]) -> PlantResult<Self> {
-        Self::new(library::load(VEHICLE, vehicle, overrides)?)
+        Self::new(VehicleParameters::load(vehicle, overrides)?)
+    }
+
+    /// What follows from the vehicle's architecture.
+    #[must_use]
+    pub fn layout(&self) -> &Layout {
+        &self.vehicle.layout
     }
 
     /// The same vehicle with each second integrated in several sub-steps; controllers stay at 1 s.
@@ -140,42 +171,99 @@ impl Plant {
         self
     }
 
+    /// The same vehicle with the network stepped by the executor for any architecture, even where it was compiled.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn with_planned_network(mut self) -> Self {
+        self.network = self.network.planned();
+        self
+    }
+
     /// A parked vehicle.
     #[must_use]
     pub fn parked(&self, initial: &InitialParameters) -> State {
+        let layout = self.layout();
         let soak_k = initial.soak_temperature_degc.kelvin();
-        let nodes = NODES;
         let mut temperatures_k = [0.0; MAXIMUM_NODES];
-        temperatures_k[..self.assembly.network.nodes()].fill(soak_k);
-        if let Some(cabin) = initial.cabin_temperature_degc {
-            for node in [nodes.cabin, nodes.exhaust, nodes.soft, nodes.hard] {
-                temperatures_k[node.index()] = cabin.kelvin();
-            }
-        }
-        for (node, value) in [
-            (nodes.battery, initial.battery_temperature_degc),
-            (nodes.thermal_battery, initial.thermal_battery_temperature_degc),
-        ] {
-            if let Some(value) = value {
+        temperatures_k[..layout.nodes.len()].fill(soak_k);
+        for member in &layout.members {
+            if let (Some(node), Some(value)) = (member.node, initial.of(&member.name)) {
                 temperatures_k[node.index()] = value.kelvin();
             }
         }
+        for cabin in &layout.cabins {
+            for part in [cabin.exhaust, cabin.soft, cabin.hard] {
+                temperatures_k[part.index()] = temperatures_k[cabin.air.index()];
+            }
+        }
+        let mut pumps = [PumpState::default(); LOOP_PLACES];
+        for (pump, parameters) in pumps.iter_mut().zip(&self.vehicle.loops) {
+            *pump = parameters.circuit.pump.idle();
+        }
+        let resting_pa =
+            self.refrigeration.as_ref().map(|cycle| cycle.table().saturation_pressure_pa(soak_k));
         State {
             time_s: 0.0,
             temperatures_k,
             battery: self.battery.rested(initial.state_of_charge_pct / 100.0),
-            connected: [false; BRANCH_COUNT],
+            connected: [false; _],
             switches: ThermalSwitches::default(),
-            htc_pump: self.vehicle.htc.circuit.pump.idle(),
-            chiller_pump: self.vehicle.chiller.circuit.pump.idle(),
-            ptc_pid: ResetPid::default(),
+            pumps,
+            heater_pids: [ResetPid::default(); _],
             pressure_pid: ResetPid::default(),
             refrigeration: RefrigerationState::parked(),
-            condensing_pressure_pa: self.refrigerant.saturation_pressure_pa(soak_k),
-            condenser_heat_flow_w: 0.0,
-            ptc_power_w: 0.0,
+            condensing_pressure_pa: resting_pa.unwrap_or(0.0),
+            entered_w: [0.0; LOOP_PLACES],
+            front_end_w: [0.0; FRONT_END_PLACES],
+            heater_power_w: 0.0,
             compressor_power_w: 0.0,
         }
+    }
+
+    /// Temperatures that decide about connections, for the recirculated share of each cabin's air.
+    #[must_use]
+    pub fn branch_temperatures(
+        &self,
+        state: &State,
+        recirculation: &[f64; CABIN_PLACES],
+        disturbance: &Disturbance,
+    ) -> BranchTemperatures {
+        let shape = self.network.indices.view();
+        let sight =
+            Sight { vehicle: &self.vehicle, parameters: &self.parameters, shape: &shape, disturbance };
+        let mut period = Period::of(Demand([0.0; _]));
+        controls::enter_front_end_air::<Planned>(sight, state, &mut period);
+        for (place, cabin) in shape.cabins.iter().enumerate() {
+            let (share, cabin_k) = (recirculation[place], state.temperatures_k[cabin.air.index()]);
+            period.core_inlet_k[place] = (1.0 - share) * disturbance.air.temperature_k + share * cabin_k;
+        }
+        controls::temperatures::<Planned>(sight, state, &period)
+    }
+
+    /// Temperature difference that drives a branch in its right direction [K].
+    #[must_use]
+    pub fn branch_difference_k(&self, temperatures: &BranchTemperatures, branch: usize) -> f64 {
+        let shape = self.network.indices.view();
+        branches::difference_of(&shape, &shape.branches[branch], temperatures)
+    }
+
+    /// Temperature difference that drives the branch of a mass in its right direction [K].
+    #[must_use]
+    pub fn mass_difference_k(&self, state: &State, branch: usize) -> f64 {
+        let shape = self.network.indices.view();
+        let circuit = usize::from(shape.branches[branch].circuit);
+        let mut behind_exchanger_k = [0.0; LOOP_PLACES];
+        let parameters = &self.vehicle.loops[circuit].circuit;
+        let rate_w_k = state.pumps[circuit].flow_kg_s * parameters.coolant_specific_heat_j_kg_k;
+        behind_exchanger_k[circuit] =
+            state.temperatures_k[shape.loops[circuit].back.index()] + state.entered_w[circuit] / rate_w_k;
+        let temperatures = BranchTemperatures {
+            nodes_k: state.temperatures_k,
+            front_end_air_k: [0.0; FRONT_END_PLACES],
+            core_inlet_k: [0.0; CABIN_PLACES],
+            behind_exchanger_k,
+        };
+        branches::difference_of(&shape, &shape.branches[branch], &temperatures)
     }
 
     /// Steps the vehicle by one control period.
@@ -208,63 +296,162 @@ impl Plant {
         record: &mut StepRecord,
         mut tamper: impl FnMut(Stage, &mut Flows),
     ) {
-        let demand = self.ranges.decode(command);
-        let period = self.begin_period(state, demand, disturbance);
-        self.substep(state, &period, disturbance, 0, record, &mut tamper);
-        if self.substeps > 1 {
-            let share = 1.0 / f64::from(self.substeps);
-            let mut mean = Flows::default();
-            mean.accumulate(&record.flows, share);
-            let (mut voltage_v, mut current_a) =
-                (record.battery_voltage_v * share, record.battery_current_a * share);
-            for part in 1..self.substeps {
-                let before = (record.ledger, record.loads_shed);
-                self.substep(state, &period, disturbance, part, record, &mut tamper);
-                mean.accumulate(&record.flows, share);
-                voltage_v += record.battery_voltage_v * share;
-                current_a += record.battery_current_a * share;
-                if before.0.relative() >= record.ledger.relative() {
-                    record.ledger = before.0;
-                }
-                record.loads_shed |= before.1;
-            }
-            record.flows = mean;
-            record.battery_voltage_v = voltage_v;
-            record.battery_current_a = current_a;
-        }
-        state.time_s += CONTROL_PERIOD_S;
-        state.ptc_power_w = record.flows[Flow::Ptc];
-        state.compressor_power_w = record.flows[Flow::Compressor];
-        state.condenser_heat_flow_w = record.flows[Flow::Condenser];
-        state.ptc_pid.applied(&self.gains.ptc, state.ptc_power_w);
-        state.pressure_pid.applied(&self.gains.pressure, state.compressor_power_w);
+        with_shape!(self.network.shaped, S => self.run::<S>(state, command, disturbance, record, &mut tamper));
     }
 
-    /// One integration step: traction demand, refrigerant loop, thermal loads, regeneration and battery,
-    /// thermal network, ledger.
-    fn substep(
+    /// One control period of a vehicle of a shape.
+    #[inline(never)]
+    fn run<S: Shape>(
         &self,
         state: &mut State,
-        period: &Period,
+        command: &Command,
         disturbance: &Disturbance,
+        record: &mut StepRecord,
+        tamper: &mut impl FnMut(Stage, &mut Flows),
+    ) {
+        let shape = &S::indices(&self.network.indices);
+        let compressor_row = shape.compressor_row.map(usize::from);
+        let mut period = Period::of(self.ranges.decoded(command, shape.actuators, compressor_row));
+        let sight = Sight { vehicle: &self.vehicle, parameters: &self.parameters, shape, disturbance };
+        self.controls.begin_period::<S>(sight, &self.branches, state, &mut period);
+        if self.substeps == 1 {
+            self.substep::<S>(sight, state, &period, 0, record, tamper);
+        } else {
+            self.substeps::<S>(sight, state, &period, record, tamper);
+        }
+        self.end_period::<S>(shape, state, &record.flows);
+    }
+
+    /// All sub-steps of a second; the record becomes their mean.
+    #[inline(never)]
+    fn substeps<S: Shape>(
+        &self,
+        sight: Sight<'_>,
+        state: &mut State,
+        period: &Period,
+        record: &mut StepRecord,
+        tamper: &mut impl FnMut(Stage, &mut Flows),
+    ) {
+        let share = 1.0 / f64::from(self.substeps);
+        let mut mean = Flows::default();
+        let (mut voltage_v, mut current_a) = (0.0, 0.0);
+        let mut worst = (LedgerEntry::default(), false);
+        for part in 0..self.substeps {
+            self.substep::<S>(sight, state, period, part, record, tamper);
+            mean.accumulate(&record.flows, share);
+            voltage_v += record.battery_voltage_v * share;
+            current_a += record.battery_current_a * share;
+            if part == 0 || record.ledger.relative() > worst.0.relative() {
+                worst.0 = record.ledger;
+            }
+            worst.1 |= record.loads_shed;
+        }
+        record.flows = mean;
+        (record.battery_voltage_v, record.battery_current_a) = (voltage_v, current_a);
+        (record.ledger, record.loads_shed) = worst;
+    }
+
+    /// What the next second must know of this one.
+    #[inline(always)]
+    fn end_period<S: Shape>(&self, shape: &Indices<'_>, state: &mut State, flows: &Flows) {
+        state.time_s += CONTROL_PERIOD_S;
+        state.heater_power_w = 0.0;
+        each!(S::heaters(shape) => |place, heater| {
+            let power_w = flows[heater.flow];
+            state.heater_power_w += power_w;
+            state.heater_pids[place].applied(&self.parameters.heater_gains[place], power_w);
+        });
+        state.compressor_power_w = flows[Flow::COMPRESSOR];
+        state.pressure_pid.applied(&self.controls.pressure, state.compressor_power_w);
+        state.front_end_w = [0.0; FRONT_END_PLACES];
+        each!(S::branches(shape) => |_, branch| {
+            if let BranchSide::Ambient(end) = branch.side
+                && shape.front_ends[end].shares_air
+            {
+                let heat_w = flows[branch.flow];
+                state.front_end_w[end] += if branch.out_of_loop { heat_w } else { -heat_w };
+            }
+        });
+        exchangers::remember::<S>(shape, flows, &mut state.entered_w, &mut state.front_end_w);
+    }
+
+    /// One integration step: traction demand, constant loads, refrigerant loop, heaters, regeneration and battery, thermal
+    /// network, ledger.
+    #[inline(always)]
+    fn substep<S: Shape>(
+        &self,
+        sight: Sight<'_>,
+        state: &mut State,
+        period: &Period,
         part: u32,
         record: &mut StepRecord,
         tamper: &mut impl FnMut(Stage, &mut Flows),
     ) {
-        let vehicle = &self.vehicle;
-        let nodes = NODES;
+        let shape = sight.shape;
+        let segment = self.segment(sight.disturbance, part);
+        record.flows.clear(shape.flows);
+        let flows = &mut record.flows;
+        let drive = self.road(sight, state, &segment, flows);
+        self.constant_loads::<S>(sight, state, period, &segment, flows);
+
+        // What the battery can still give to thermal loads.
+        let battery_k = state.temperatures_k[shape.battery.index()];
+        let circuit = self.battery.during(&state.battery, battery_k, segment.step_s);
+        let limits = circuit.power_limits();
+        let driving_w = drive.driving.map_or(0.0, |flow| flow.electrical_power_w);
+        let spare_w = (limits.discharge_w - driving_w - base_load_w::<S>(shape, flows)).max(0.0);
+
+        let conditions = self.conditions::<S>(sight, state, period, segment.speed_m_s);
+        let start_k = state.temperatures_k;
+        let given = Given {
+            capacities_j_k: &self.network.capacities_j_k,
+            constants: &self.network.constants,
+            now: &conditions,
+            start_k: &start_k,
+        };
+        let planned = self.network.planned.as_ref();
+        let (forecasts, factors) = S::begin(planned, &given, segment.step_s, flows);
+        let available = Available { spare_w, may_start: part == 0 };
+        self.refrigerate::<S>(sight, state, period, &segment, &forecasts, &available, record);
+        record.loads_shed |=
+            self.heat::<S>(shape, &start_k, period, &segment, &forecasts, spare_w, &mut record.flows);
+
+        let flows = &mut record.flows;
+        self.traction::<S>(shape, &drive, &limits, flows);
+        tamper(Stage::Loads, flows);
+        let battery = draw::<S>(shape, &circuit, &limits, flows);
+
+        tamper(Stage::Heat, flows);
+        let end_k = S::finish(planned, &factors, &given, flows);
+
+        tamper(Stage::Ledger, flows);
+        let stored = self.stored_change(shape, state, &segment, &circuit, &battery.state, &end_k);
+        record.ledger = self.ledger.balance(shape.flows, flows, &stored, segment.step_s);
+        state.temperatures_k = end_k;
+        state.battery = battery.state;
+        record.battery_voltage_v = battery.voltage_v;
+        record.battery_current_a = battery.current_a;
+        record.power_limits = limits;
+    }
+
+    #[inline(always)]
+    fn segment(&self, disturbance: &Disturbance, part: u32) -> Segment {
         let step_s = CONTROL_PERIOD_S / f64::from(self.substeps);
         let acceleration = (disturbance.end_speed_m_s - disturbance.start_speed_m_s) / CONTROL_PERIOD_S;
         let start_m_s = disturbance.start_speed_m_s + acceleration * step_s * f64::from(part);
         let end_m_s = start_m_s + acceleration * step_s;
-        let speed_m_s = 0.5 * (start_m_s + end_m_s);
-        let flows = &mut record.flows;
-        *flows = Flows::default();
+        Segment { step_s, start_m_s, end_m_s, speed_m_s: 0.5 * (start_m_s + end_m_s) }
+    }
 
-        // Traction demand.
-        let road = vehicle.body.road_load(start_m_s, end_m_s, step_s, disturbance.air.density_kg_m3);
+    /// Traction demand.
+    #[inline(always)]
+    fn road(&self, sight: Sight<'_>, state: &State, segment: &Segment, flows: &mut Flows) -> Drive<'_> {
+        let vehicle = &self.vehicle;
+        let Segment { step_s, start_m_s, end_m_s, speed_m_s } = *segment;
+        let density_kg_m3 = sight.disturbance.air.density_kg_m3;
+        let road = vehicle.body.road_load(start_m_s, end_m_s, step_s, density_kg_m3);
         let wheel_w = road.wheel_power_w();
-        let oil_k = state.temperatures_k[nodes.transmission.index()];
+        let oil_k = state.temperatures_k[sight.shape.transmission.index()];
         let powertrain = Powertrain {
             motor: &vehicle.motor,
             transmission: &vehicle.transmission,
@@ -273,181 +460,373 @@ impl Plant {
             spin_loss_w: vehicle.transmission.spin_loss_w(oil_k, speed_m_s),
         };
         let driving = (wheel_w >= 0.0).then(|| powertrain.drive(wheel_w));
-        flows[Flow::Drag] = road.drag_power_w;
-        flows[Flow::Rolling] = road.rolling_power_w;
-        flows[Flow::Kinetic] = road.kinetic_power_w;
-        flows[Flow::Wheel] = wheel_w;
-
-        // Loads that are always there.
-        flows[Flow::Auxiliary] = vehicle.controls.auxiliary_power_w;
-        [flows[Flow::HtcPump], flows[Flow::ChillerPump]] = period.pumps_w;
-        flows[Flow::Blower] = period.ventilation.blower_power_w;
-        flows[Flow::Fan] = self.fan_power_w(state, speed_m_s);
-        flows[Flow::Solar] = disturbance.solar_gain_w;
-        flows[Flow::Occupants] = disturbance.occupants * vehicle.cabin.occupant_heat_w;
-
-        // What the battery can still give to thermal loads.
-        let battery_k = state.temperatures_k[nodes.battery.index()];
-        let circuit = self.battery.during(&state.battery, battery_k, step_s);
-        let limits = circuit.power_limits();
-        let driving_w = driving.map_or(0.0, |flow| flow.electrical_power_w);
-        let spare_w = (limits.discharge_w - driving_w - flows.base_load_w()).max(0.0);
-
-        // Refrigerant loop, its caps at the end of the step included.
-        let conditions = self.link_conditions(state, period, disturbance, speed_m_s);
-        let links = self.assembly.links(vehicle, &conditions);
-        let factorised = self.assembly.network.factorise(&links, step_s);
+        flows[Flow::DRAG] = road.drag_power_w;
+        flows[Flow::ROLLING] = road.rolling_power_w;
+        flows[Flow::KINETIC] = road.kinetic_power_w;
+        flows[Flow::WHEEL] = wheel_w;
         if let Some(driving) = driving {
-            flows[Flow::MotorLoss] = driving.motor_loss_w;
-            flows[Flow::TransmissionLoss] = driving.transmission_loss_w;
+            flows[Flow::MOTOR_LOSS] = driving.motor_loss_w;
+            flows[Flow::TRANSMISSION_LOSS] = driving.transmission_loss_w;
         }
-        let without_heat_pump_k =
-            factorised.advance(&state.temperatures_k, &self.heat_sources(flows, &conditions));
-        let hot_response = factorised.response(&self.assembly.condenser_sources(1.0, &conditions));
-        let mut cold_source = NodeValues::default();
-        cold_source[nodes.chiller_supply.index()] = 1.0;
-        let cold_response = factorised.response(&cold_source);
-        let boundary = LoopBoundary {
-            hot_return_k: state.temperatures_k[nodes.htc_return.index()],
-            cold_return_k: state.temperatures_k[nodes.chiller_return.index()],
-            hot_capacity_rate_w_k: period.htc_rate_w_k,
-            cold_capacity_rate_w_k: period.chiller_rate_w_k,
-            hot_supply: SupplyLimit {
-                base_k: without_heat_pump_k[nodes.htc_supply.index()],
-                sensitivity_k_w: hot_response[nodes.htc_supply.index()],
-                limit_k: vehicle.htc.maximum_supply_degc.kelvin(),
-            },
-            cold_supply: SupplyLimit {
-                base_k: without_heat_pump_k[nodes.chiller_supply.index()],
-                sensitivity_k_w: cold_response[nodes.chiller_supply.index()],
-                limit_k: vehicle.chiller.minimum_supply_degc.kelvin(),
-            },
-        };
-        let compressor_w = period.compressor_demand_w.min(spare_w);
-        let allowed =
-            CompressorAllowance { demand_w: compressor_w, available_w: spare_w, may_start: part == 0 };
-        let refrigeration = self.refrigeration.step(&mut state.refrigeration, &boundary, &allowed, step_s);
-        flows[Flow::Compressor] = refrigeration.electric_power_w;
-        flows[Flow::CompressorLoss] = refrigeration.loss_to_ambient_w;
-        flows[Flow::Condenser] = refrigeration.condenser_heat_flow_w;
-        flows[Flow::Evaporator] = refrigeration.evaporator_heat_flow_w;
-
-        // PTC, off above its cut-off temperature: just enough to end the step there, continuous in all it
-        // depends on.
-        let hot_supply_k = boundary.hot_supply.base_k
-            + boundary.hot_supply.sensitivity_k_w * refrigeration.condenser_heat_flow_w;
-        let to_cutoff_w = vehicle.ptc.power_to_cutoff_w(hot_supply_k, boundary.hot_supply.sensitivity_k_w);
-        let ptc_spare_w = (spare_w - refrigeration.electric_power_w).max(0.0);
-        let ptc_w = period.ptc_demand_w.min(to_cutoff_w);
-        flows[Flow::Ptc] = ptc_w.min(ptc_spare_w);
-        let held_back = compressor_w < period.compressor_demand_w && refrigeration.limited_by == Limit::Power;
-        let loads_shed = held_back || flows[Flow::Ptc] < ptc_w;
-
-        // Regeneration against the charge limit with this step's loads, then the battery.
-        let loads_w = flows.base_load_w() + flows[Flow::Compressor] + flows[Flow::Ptc];
-        let traction = driving.unwrap_or_else(|| powertrain.brake(-wheel_w, limits.charge_w + loads_w));
-        flows[Flow::Traction] = traction.electrical_power_w;
-        flows[Flow::MotorLoss] = traction.motor_loss_w;
-        flows[Flow::TransmissionLoss] = traction.transmission_loss_w;
-        flows[Flow::FrictionBrake] = traction.friction_brake_power_w;
-        tamper(Stage::Loads, flows);
-        let battery = draw(&circuit, &limits, flows);
-
-        // Thermal network.
-        tamper(Stage::Heat, flows);
-        let start_k = state.temperatures_k;
-        let end_k = factorised.advance(&start_k, &self.heat_sources(flows, &conditions));
-        self.assembly.record_flows(&links, &conditions, &end_k, flows);
-
-        // Ledger.
-        tamper(Stage::Ledger, flows);
-        let stored = StoredEnergyChange {
-            kinetic_j: vehicle.body.kinetic_energy_j(end_m_s) - vehicle.body.kinetic_energy_j(start_m_s),
-            chemical_j: circuit.chemical_energy_gained_j(&battery.state),
-            polarisation_j: self.battery.polarisation_energy_j(&battery.state)
-                - self.battery.polarisation_energy_j(&state.battery),
-            heat_j: self.assembly.network.heat_gained_j(&start_k, &end_k),
-        };
-        let ledger = ledger::balance(flows, &stored, step_s);
-
-        state.temperatures_k = end_k;
-        state.battery = battery.state;
-        state.condensing_pressure_pa = refrigeration.condensing_pressure_pa;
-        record.demanded_w = period.demand.compressor_power_w;
-        record.compressor_demand_w = period.compressor_demand_w;
-        record.refrigeration = refrigeration;
-        record.boundary = boundary;
-        record.battery_voltage_v = battery.voltage_v;
-        record.battery_current_a = battery.current_a;
-        record.power_limits = limits;
-        record.ledger = ledger;
-        record.loads_shed = loads_shed;
+        Drive { powertrain, wheel_w, driving }
     }
 
-    /// Fan of the front-end exchanger, on while that is connected [W].
-    fn fan_power_w(&self, state: &State, speed_m_s: f64) -> f64 {
-        let connected =
-            state.connected[Branch::AmbientHtc as usize] || state.connected[Branch::AmbientChiller as usize];
-        if connected { self.vehicle.ambient_exchanger.fan_power_w(speed_m_s) } else { 0.0 }
-    }
-
-    /// What the links of the thermal network depend on during a step.
-    fn link_conditions(
+    /// Loads and gains that nothing in the step changes.
+    #[inline(always)]
+    fn constant_loads<S: Shape>(
         &self,
+        sight: Sight<'_>,
         state: &State,
         period: &Period,
-        disturbance: &Disturbance,
+        segment: &Segment,
+        flows: &mut Flows,
+    ) {
+        let Sight { vehicle, parameters, shape, disturbance } = sight;
+        flows[Flow::AUXILIARY] = vehicle.controls.auxiliary_power_w;
+        each!(S::loops(shape) => |place, circuit| { flows[circuit.pump_flow] = period.pumps_w[place]; });
+        flows[Flow::FAN] = fan_power_w::<S>(sight, state, period, segment.speed_m_s);
+        each!(S::cabins(shape) => |place, cabin| {
+            flows[cabin.blower_flow] = period.ventilation[place].blower_power_w;
+            flows[cabin.solar_flow] = disturbance.solar_gain_w * parameters.solar_shares[place];
+            let occupants = disturbance.occupants * parameters.occupant_shares[place];
+            flows[cabin.occupants_flow] = occupants * parameters.cabins[place].occupant_heat_w;
+        });
+    }
+
+    /// What the links of the thermal network depend on.
+    #[inline(always)]
+    fn conditions<'a, S: Shape>(
+        &self,
+        sight: Sight<'_>,
+        state: &State,
+        period: &'a Period,
         speed_m_s: f64,
-    ) -> LinkConditions {
-        let nodes = NODES;
-        let temperatures = RecoveryTemperatures {
-            cabin_k: state.temperatures_k[nodes.cabin.index()],
-            chiller_supply_k: state.temperatures_k[nodes.chiller_supply.index()],
+    ) -> Conditions<'a> {
+        let Sight { vehicle, parameters, shape, disturbance } = sight;
+        let mut masses_w_k = parameters.masses_w_k;
+        masses_w_k[0] = vehicle.battery.plate.conductance_to_ambient_w_k(speed_m_s, &disturbance.air);
+        masses_w_k[1] = vehicle.motor.ambient_conductance_w_k(speed_m_s);
+        masses_w_k[2] = vehicle.transmission.ambient_conductance_w_k(speed_m_s);
+        let mut cabins = [CabinConditions::default(); CABIN_PLACES];
+        each!(S::cabins(shape) => |place, cabin| {
+            cabins[place] = cabin_conditions(sight, (place, cabin), state, period, speed_m_s);
+        });
+        let mut conditions = Conditions {
+            rates_w_k: &period.rates_w_k,
+            branches_w_k: &period.branches_w_k,
+            masses_w_k,
+            cabins,
+            weights: [0.0; WEIGHT_PLACES],
+            front_end_air_k: &period.front_end_air_k,
             ambient_k: disturbance.air.temperature_k,
         };
-        let cabin_is_heated = period.branches_w_k[Branch::CabinHtc as usize] > 0.0;
-        let recovery_w_k = self.vehicle.cabin.exhaust_recovery_share * period.ventilation.fresh_rate_w_k;
-        LinkConditions {
-            htc_rate_w_k: period.htc_rate_w_k,
-            chiller_rate_w_k: period.chiller_rate_w_k,
-            branches_w_k: period.branches_w_k,
-            ventilation: period.ventilation,
-            recovery: ExhaustRecovery::during(recovery_w_k, cabin_is_heated, &temperatures),
-            speed_m_s,
-            battery_ambient_w_k: self
-                .vehicle
-                .battery
-                .plate
-                .conductance_to_ambient_w_k(speed_m_s, &disturbance.air),
-            ambient_k: disturbance.air.temperature_k,
+        if shape.weights > 0 {
+            enter_series_weights(&vehicle.layout, &mut conditions);
+        }
+        conditions
+    }
+
+    /// Refrigerant loop, its caps at the end of the step included.
+    #[allow(clippy::too_many_arguments, reason = "what the phases of a step hand on, nothing of it kept")]
+    #[inline(always)]
+    fn refrigerate<S: Shape>(
+        &self,
+        sight: Sight<'_>,
+        state: &mut State,
+        period: &Period,
+        segment: &Segment,
+        forecasts: &[Forecast; INLET_PLACES],
+        available: &Available,
+        record: &mut StepRecord,
+    ) {
+        record.loads_shed = false;
+        let (Some(row), Some(cycle)) = (sight.shape.compressor_row, &self.refrigeration) else { return };
+        let shape = sight.shape;
+        let demand_w = period.compressor_demand_w.min(available.spare_w);
+        let allowed =
+            CompressorAllowance { demand_w, available_w: available.spare_w, may_start: available.may_start };
+        let mut sides = self.exchangers.sides::<S>(
+            shape,
+            &Surroundings {
+                nodes_k: &state.temperatures_k,
+                rates_w_k: &period.rates_w_k,
+                ventilation: &period.ventilation,
+                core_inlet_k: &period.core_inlet_k,
+                branches_w_k: &period.branches_w_k,
+                front_end_air_k: &period.front_end_air_k,
+                ambient_k: sight.disturbance.air.temperature_k,
+                speed_m_s: segment.speed_m_s,
+                forecasts,
+                demand: &period.demand,
+                may_run: demand_w > 0.0 || state.refrigeration.compressor.running,
+            },
+        );
+        record.boundary = exchangers::boundary(shape, &sides);
+        if shape.is_pair() {
+            let result = cycle.step(&mut state.refrigeration, &record.boundary, &allowed, segment.step_s);
+            record.refrigeration = result;
+        } else {
+            self.step_exchangers(cycle, shape, state, &allowed, segment.step_s, &mut sides, record);
+        }
+        let result = &record.refrigeration;
+        record.flows[Flow::COMPRESSOR] = result.electric_power_w;
+        record.flows[Flow::COMPRESSOR_LOSS] = result.loss_to_ambient_w;
+        exchangers::record(shape, result, &sides, &mut record.flows);
+        record.demanded_w = period.demand.0[usize::from(row)];
+        record.compressor_demand_w = period.compressor_demand_w;
+        record.loads_shed = demand_w < period.compressor_demand_w && result.limited_by == Limit::Power;
+        state.condensing_pressure_pa = result.condensing_pressure_pa;
+    }
+
+    /// The refrigerant loop with exchangers that close where they would run backwards.
+    #[allow(clippy::too_many_arguments, reason = "what the phases of a step hand on, nothing of it kept")]
+    fn step_exchangers(
+        &self,
+        cycle: &RefrigerationCycle,
+        shape: &Indices<'_>,
+        state: &mut State,
+        allowed: &CompressorAllowance,
+        step_s: f64,
+        sides: &mut Sides,
+        record: &mut StepRecord,
+    ) {
+        let before = state.refrigeration;
+        loop {
+            record.refrigeration = cycle.step(&mut state.refrigeration, &record.boundary, allowed, step_s);
+            if !exchangers::close_backward(shape, &record.refrigeration, sides) {
+                return;
+            }
+            state.refrigeration = before;
+            record.boundary = exchangers::boundary(shape, sides);
         }
     }
 
-    /// Heat that flows bring into the nodes [W].
-    fn heat_sources(&self, flows: &Flows, conditions: &LinkConditions) -> NodeValues {
-        let nodes = NODES;
-        let mut sources = self.assembly.condenser_sources(flows[Flow::Condenser], conditions);
-        sources[nodes.htc_supply.index()] += flows[Flow::Ptc];
-        sources[nodes.htc_return.index()] += flows[Flow::HtcPump];
-        sources[nodes.chiller_supply.index()] -= flows[Flow::Evaporator];
-        sources[nodes.chiller_return.index()] += flows[Flow::ChillerPump];
-        sources[nodes.motor.index()] += flows[Flow::MotorLoss];
-        sources[nodes.transmission.index()] += flows[Flow::TransmissionLoss];
-        sources[nodes.battery.index()] += flows[Flow::BatteryLoss];
-        sources[nodes.cabin.index()] += flows[Flow::Blower] + flows[Flow::Solar] + flows[Flow::Occupants];
-        sources
+    /// Heaters, off above their cut-off temperature: just enough to end the step there, continuous in all it depends on.
+    /// Whether the battery could not feed one.
+    #[allow(unused_assignments, reason = "what the last heater leaves is not asked for")]
+    #[allow(clippy::too_many_arguments, reason = "what the phases of a step hand on, nothing of it kept")]
+    #[inline(always)]
+    fn heat<S: Shape>(
+        &self,
+        shape: &Indices<'_>,
+        start_k: &NodeValues,
+        period: &Period,
+        segment: &Segment,
+        forecasts: &[Forecast; INLET_PLACES],
+        spare_w: f64,
+        flows: &mut Flows,
+    ) -> bool {
+        let mut spare_w = (spare_w - flows[Flow::COMPRESSOR]).max(0.0);
+        let mut shed = false;
+        each!(S::heaters(shape) => |place, heater| {
+            let (mut reached_k, sensitivity_k_w) = match heater.target {
+                HeaterTarget::Loop(circuit) => {
+                    let indices = &shape.loops[circuit];
+                    let forecast = indices.inlet.map(|inlet| forecasts[usize::from(inlet)]).unwrap_or_default();
+                    let entering_w = indices.exchanger.map_or(0.0, |exchanger| {
+                        let exchanger = &shape.exchangers[usize::from(exchanger)];
+                        let heat_w = flows[exchanger.flow];
+                        if exchanger.level == Level::Condensing { heat_w } else { -heat_w }
+                    });
+                    let reached_k = forecast.base_k + forecast.sensitivity_k_w * entering_w;
+                    (reached_k, forecast.sensitivity_k_w)
+                }
+                HeaterTarget::Mass(node) => {
+                    (start_k[node.index()], segment.step_s / self.network.capacities_j_k[node.index()])
+                }
+            };
+            for before in shape.heaters.iter().take(place).filter(|before| before.target == heater.target) {
+                reached_k += sensitivity_k_w * flows[before.flow];
+            }
+            let to_cutoff_w = self.parameters.heaters[place].power_to_cutoff_w(reached_k, sensitivity_k_w);
+            let wanted_w = period.heaters_w[place].min(to_cutoff_w);
+            let power_w = wanted_w.min(spare_w);
+            flows[heater.flow] = power_w;
+            shed |= power_w < wanted_w;
+            spare_w -= power_w;
+        });
+        shed
+    }
+
+    /// Traction, while braking against the charge limit with this step's loads.
+    #[inline(always)]
+    fn traction<S: Shape>(
+        &self,
+        shape: &Indices<'_>,
+        drive: &Drive<'_>,
+        limits: &PowerLimits,
+        flows: &mut Flows,
+    ) {
+        let base_w = base_load_w::<S>(shape, flows) + flows[Flow::COMPRESSOR];
+        let mut loads_w = base_w;
+        each!(S::heaters(shape) => |_, heater| { loads_w += flows[heater.flow]; });
+        let Drive { powertrain, wheel_w, driving } = drive;
+        let traction = driving.unwrap_or_else(|| powertrain.brake(-wheel_w, limits.charge_w + loads_w));
+        flows[Flow::TRACTION] = traction.electrical_power_w;
+        flows[Flow::MOTOR_LOSS] = traction.motor_loss_w;
+        flows[Flow::TRANSMISSION_LOSS] = traction.transmission_loss_w;
+        flows[Flow::FRICTION_BRAKE] = traction.friction_brake_power_w;
+    }
+
+    #[inline(always)]
+    fn stored_change(
+        &self,
+        shape: &Indices<'_>,
+        state: &State,
+        segment: &Segment,
+        circuit: &CircuitStep<'_>,
+        battery: &BatteryState,
+        end_k: &NodeValues,
+    ) -> StoredEnergyChange {
+        let body = &self.vehicle.body;
+        let capacities_j_k = &self.network.capacities_j_k;
+        StoredEnergyChange {
+            kinetic_j: body.kinetic_energy_j(segment.end_m_s) - body.kinetic_energy_j(segment.start_m_s),
+            chemical_j: circuit.chemical_energy_gained_j(battery),
+            polarisation_j: self.battery.polarisation_energy_j(battery)
+                - self.battery.polarisation_energy_j(&state.battery),
+            heat_j: heat_gained_j(shape.nodes, capacities_j_k, &state.temperatures_k, end_k),
+        }
     }
 }
 
+/// Electrical power besides traction, compressor and heaters [W].
+#[inline(always)]
+fn base_load_w<S: Shape>(shape: &Indices<'_>, flows: &Flows) -> f64 {
+    let mut sum_w = 0.0;
+    each!(S::base_loads(shape) => |_, flow| { sum_w += flows[*flow]; });
+    sum_w
+}
+
 /// Draws all electrical power from the battery; what it cannot deliver goes unserved.
-fn draw(circuit: &CircuitStep<'_>, limits: &PowerLimits, flows: &mut Flows) -> BatteryStep {
-    let wanted_w = flows[Flow::Traction] + flows.base_load_w() + flows[Flow::Compressor] + flows[Flow::Ptc];
+#[inline(always)]
+fn draw<S: Shape>(
+    shape: &Indices<'_>,
+    circuit: &CircuitStep<'_>,
+    limits: &PowerLimits,
+    flows: &mut Flows,
+) -> BatteryStep {
+    let base_w = flows[Flow::TRACTION] + base_load_w::<S>(shape, flows) + flows[Flow::COMPRESSOR];
+    let mut wanted_w = base_w;
+    each!(S::heaters(shape) => |_, heater| { wanted_w += flows[heater.flow]; });
     let battery = circuit.draw(wanted_w.min(limits.discharge_w));
     // Formed from what the circuit really delivered, so that round-off of its solution is not lost.
-    flows[Flow::Unserved] =
+    flows[Flow::UNSERVED] =
         if wanted_w > limits.discharge_w { wanted_w - battery.terminal_power_w } else { 0.0 };
-    flows[Flow::Battery] = battery.terminal_power_w;
-    flows[Flow::Chemical] = battery.chemical_power_w;
-    flows[Flow::BatteryLoss] = battery.loss_w;
+    flows[Flow::BATTERY] = battery.terminal_power_w;
+    flows[Flow::CHEMICAL] = battery.chemical_power_w;
+    flows[Flow::BATTERY_LOSS] = battery.loss_w;
     battery
+}
+
+/// Fans of the front-end exchangers that are at work: one for all that share their air [W].
+#[inline(always)]
+fn fan_power_w<S: Shape>(sight: Sight<'_>, state: &State, period: &Period, speed_m_s: f64) -> f64 {
+    let Sight { parameters, shape, .. } = sight;
+    let (mut power_w, mut shared_w): (f64, f64) = (0.0, 0.0);
+    each!(S::front_ends(shape) => |place, indices| {
+        let mut at_work = indices.refrigerant && exchangers::uses_front_end(shape, place, &period.demand);
+        each!(S::branches(shape) => |i, branch| {
+            if branch.side == BranchSide::Ambient(place) {
+                at_work |= state.connected[i];
+            }
+        });
+        let own_w = if at_work { parameters.front_ends[place].fan_power_w(speed_m_s) } else { 0.0 };
+        if indices.shares_air {
+            shared_w = shared_w.max(own_w);
+        } else {
+            power_w += own_w;
+        }
+    });
+    power_w + shared_w
+}
+
+#[inline(always)]
+fn cabin_conditions(
+    sight: Sight<'_>,
+    (place, cabin): (usize, &CabinLayout),
+    state: &State,
+    period: &Period,
+    speed_m_s: f64,
+) -> CabinConditions {
+    let Sight { parameters, shape, disturbance, .. } = sight;
+    let parameters = &parameters.cabins[place];
+    let ventilation = period.ventilation[place];
+    let recovery = match cabin.recovery {
+        Some(circuit) => {
+            let largest_w_k = parameters.exhaust_recovery_share * ventilation.fresh_rate_w_k;
+            let heated = cabin.heater.is_some_and(|branch| period.branches_w_k[branch] > 0.0);
+            let temperatures = RecoveryTemperatures {
+                cabin_k: state.temperatures_k[cabin.air.index()],
+                supply_k: state.temperatures_k[shape.loops[circuit].supply.index()],
+                ambient_k: disturbance.air.temperature_k,
+            };
+            ExhaustRecovery::during(largest_w_k, heated, &temperatures)
+        }
+        None => ExhaustRecovery::default(),
+    };
+    CabinConditions { ventilation, recovery, panel_w_k: parameters.panel_conductance_w_k(speed_m_s) }
+}
+
+/// What the compressor may have.
+struct Available {
+    spare_w: f64,
+    may_start: bool,
+}
+
+/// Weights that the return and the branches before have in the coolant that reaches each later branch of a series.
+fn enter_series_weights(layout: &Layout, conditions: &mut Conditions<'_>) {
+    let mut place = 0;
+    for (circuit, declared) in layout.loops.iter().enumerate() {
+        for (position, _) in declared.series.iter().enumerate().skip(1) {
+            let before = &declared.series[..position];
+            let share = |branch: usize| conditions.branches_w_k[branch] / conditions.rates_w_k[circuit];
+            let left_after =
+                |first: usize| before[first..].iter().fold(1.0, |left, &branch| left * (1.0 - share(branch)));
+            let mut weights = [0.0; WEIGHT_PLACES];
+            weights[0] = left_after(0);
+            for (k, &branch) in before.iter().enumerate() {
+                weights[k + 1] = share(branch) * left_after(k + 1);
+            }
+            for weight in &weights[..=before.len()] {
+                conditions.weights[place] = *weight;
+                place += 1;
+            }
+        }
+    }
+}
+
+/// Heat capacities and constant conductances of a vehicle's network.
+fn network(vehicle: &VehicleParameters) -> Network {
+    let layout = &*vehicle.layout;
+    let mut capacities_j_k = NodeValues::default();
+    let mut constants = Constants::default();
+    for (place, (circuit, parameters)) in layout.loops.iter().zip(&vehicle.loops).enumerate() {
+        let half_j_k = 0.5 * parameters.circuit.heat_capacity_j_k;
+        (capacities_j_k[circuit.supply.index()], capacities_j_k[circuit.back.index()]) = (half_j_k, half_j_k);
+        constants.half_hoses_w_k[place] = parameters.circuit.half_hose_conductance_w_k();
+    }
+    let mut stores = vehicle.stores.iter();
+    for mass in &layout.masses {
+        capacities_j_k[mass.node.index()] = match layout.members[mass.member].kind {
+            MemberKind::Battery => vehicle.battery.heat_capacity_j_k(),
+            MemberKind::Motor => vehicle.motor.heat_capacity_j_k,
+            MemberKind::Transmission => vehicle.transmission.heat_capacity_j_k,
+            _ => stores.next().map_or(0.0, |store| store.heat_capacity_j_k),
+        };
+    }
+    for (place, (cabin, share)) in layout.cabins.iter().zip(&vehicle.cabins).enumerate() {
+        let parameters = &share.parameters;
+        for (node, capacity_j_k) in [
+            (cabin.air, parameters.air_heat_capacity_j_k),
+            (cabin.exhaust, parameters.exhaust_heat_capacity_j_k),
+            (cabin.soft, parameters.soft_heat_capacity_j_k),
+            (cabin.hard, parameters.hard_heat_capacity_j_k),
+        ] {
+            capacities_j_k[node.index()] = capacity_j_k;
+        }
+        constants.soft_w_k[place] = parameters.soft_conductance_w_k;
+        constants.hard_w_k[place] = parameters.hard_conductance_w_k;
+    }
+    Network::new(layout, capacities_j_k, constants)
 }

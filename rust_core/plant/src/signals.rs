@@ -1,14 +1,15 @@
-//! The one table of what can be seen of a vehicle: name, unit, meaning, reader.
+//! What can be seen of a vehicle: name, unit, bounds, meaning, reader, a row each, made from its architecture's layout.
 //!
 //! Trajectories, reports and observations are derived from these rows.
 
-use crate::circuits::assembly::NODES;
-use crate::command::{Connection, Member};
+use crate::architecture::declaration::MemberKind;
+use crate::architecture::layout::Layout;
 use crate::config::ZERO_CELSIUS_K;
 use crate::flows::Flow;
 use crate::numerics::thermal_network::Node;
-use crate::plant::{Disturbance, Plant, StepRecord};
+use crate::plant::{Plant, StepRecord};
 use crate::state::State;
+use crate::surroundings::Disturbance;
 
 /// Everything that a reader may look at after a step.
 #[derive(Debug, Clone, Copy)]
@@ -30,203 +31,411 @@ impl View<'_> {
 }
 
 /// A quantity that can be seen.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Signal {
     /// Name with its unit; a trajectory column.
-    pub name: &'static str,
+    pub name: String,
     /// Unit.
     pub unit: &'static str,
     /// Meaning.
-    pub description: &'static str,
-    reader: Reader,
+    pub description: String,
+    /// Values that an observation shows as -1 and 1.
+    pub bounds: (f64, f64),
+    /// Whether agents see it unless they say otherwise, and before which others.
+    pub default: Option<u8>,
+    /// Where it is read.
+    pub reader: Reader,
 }
 
+/// Where a signal is read.
 #[derive(Debug, Clone, Copy)]
-enum Reader {
+pub enum Reader {
+    /// A function of all that can be seen.
     Function(fn(&View<'_>) -> f64),
+    /// Temperature of a node [degC].
     Temperature(Node),
+    /// A flow [W].
     Flow(Flow),
-    Connection(Member),
+    /// Number of the option that a member is connected by.
+    Connection(u8),
+    /// Coolant flow of a loop [kg/s].
+    LoopFlow(u8),
+}
+
+/// Functions are the same if their signals have the same name.
+impl PartialEq for Reader {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Function(_), Self::Function(_)) => true,
+            (Self::Temperature(a), Self::Temperature(b)) => a == b,
+            (Self::Flow(a), Self::Flow(b)) => a == b,
+            (Self::Connection(a), Self::Connection(b)) | (Self::LoopFlow(a), Self::LoopFlow(b)) => a == b,
+            _ => false,
+        }
+    }
+}
+
+impl Reader {
+    /// Value at a view.
+    #[must_use]
+    #[inline]
+    pub fn read(self, view: &View<'_>) -> f64 {
+        match self {
+            Self::Function(read) => read(view),
+            Self::Temperature(node) => view.state.temperatures_k[node.index()] - ZERO_CELSIUS_K,
+            Self::Flow(flow) => view.recorded(|record| record.flows[flow]),
+            Self::Connection(member) => connection(view.plant.layout(), view.state, usize::from(member)),
+            Self::LoopFlow(circuit) => view.state.pumps[usize::from(circuit)].flow_kg_s,
+        }
+    }
+}
+
+/// Number of the loop that a member is connected to, counted from 1; 0 is none.
+fn connection(layout: &Layout, state: &State, member: usize) -> f64 {
+    let connected = layout.members[member].options.iter().find(|&&branch| state.connected[branch]);
+    connected.map_or(0.0, |&branch| (layout.branches[branch].circuit + 1) as f64)
+}
+
+/// What a row's bounds are where nothing else is said, by unit.
+fn bounds_of_unit(unit: &str) -> (f64, f64) {
+    match unit {
+        "degC" => (-60.0, 140.0),
+        "W" => (-50_000.0, 50_000.0),
+        "A" => (-500.0, 500.0),
+        "bar" => (0.0, 32.0),
+        "kg/s" => (0.0, 0.5),
+        _ => (0.0, 10.0),
+    }
+}
+
+/// What agents see by default comes in this order.
+mod rank {
+    pub const TIME: u8 = 0;
+    pub const SPEED: u8 = 1;
+    pub const TRACTION: u8 = 2;
+    pub const AMBIENT: u8 = 3;
+    pub const CABIN: u8 = 4;
+    pub const BATTERY: u8 = 5;
+    pub const MOTOR: u8 = 6;
+    pub const TRANSMISSION: u8 = 7;
+    pub const STORE: u8 = 8;
+    pub const LOOP: u8 = 9;
+    pub const LOOP_FLOW: u8 = 10;
+    pub const CONDENSING: u8 = 11;
+    pub const EVAPORATING: u8 = 12;
+    pub const DISCHARGE: u8 = 13;
+    pub const COMPRESSOR_SPEED: u8 = 14;
+    pub const CHARGE: u8 = 15;
+    pub const CHARGE_LIMIT: u8 = 16;
+    pub const DISCHARGE_LIMIT: u8 = 17;
+    pub const BATTERY_POWER: u8 = 18;
+    pub const COMPRESSOR_POWER: u8 = 19;
+    pub const HEATER_POWER: u8 = 20;
+    pub const AUXILIARY: u8 = 21;
+    pub const CONDENSER: u8 = 22;
+    pub const EVAPORATOR: u8 = 23;
+    pub const EXCHANGER: u8 = 24;
+    /// Branches of cabins, the battery, front-end exchangers, motor, transmission, plates.
+    pub const BRANCHES: u8 = 25;
+}
+
+/// All signals of a vehicle.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SignalTable {
+    rows: Vec<Signal>,
+}
+
+/// Adds a row with what is usual for its unit.
+fn plain(
+    name: impl Into<String>,
+    unit: &'static str,
+    description: impl Into<String>,
+    reader: Reader,
+) -> Signal {
+    let bounds = bounds_of_unit(unit);
+    Signal { name: name.into(), unit, description: description.into(), bounds, default: None, reader }
+}
+
+fn function(
+    name: &'static str,
+    unit: &'static str,
+    description: &'static str,
+    read: fn(&View<'_>) -> f64,
+) -> Signal {
+    plain(name, unit, description, Reader::Function(read))
 }
 
 impl Signal {
-    /// The flow that it shows, if it is one.
+    fn within(mut self, low: f64, high: f64) -> Self {
+        self.bounds = (low, high);
+        self
+    }
+
+    fn seen(mut self, rank: u8) -> Self {
+        self.default = Some(rank);
+        self
+    }
+}
+
+impl SignalTable {
+    /// The signals of a layout, in column order.
     #[must_use]
-    pub fn flow(&self) -> Option<Flow> {
-        match self.reader {
-            Reader::Flow(flow) => Some(flow),
-            Reader::Function(_) | Reader::Temperature(_) | Reader::Connection(_) => None,
+    pub fn of(layout: &Layout) -> Self {
+        let mut table = Self::default();
+        table.add_motion();
+        table.add_temperatures(layout);
+        table.add_battery();
+        table.add_loops(layout);
+        if layout.refrigerates() {
+            table.add_refrigeration();
+        }
+        table.add_checks();
+        table.add_connections(layout);
+        table.add_flows(layout);
+        table
+    }
+
+    /// Rows in column order.
+    #[must_use]
+    pub fn rows(&self) -> &[Signal] {
+        &self.rows
+    }
+
+    /// The signal of a name.
+    #[must_use]
+    pub fn find(&self, name: &str) -> Option<&Signal> {
+        self.rows.iter().find(|signal| signal.name == name)
+    }
+
+    fn add_motion(&mut self) {
+        let speed = |v: &View<'_>| {
+            if v.record.is_some() { v.disturbance.end_speed_m_s } else { v.disturbance.start_speed_m_s }
+        };
+        self.rows.extend([
+            function("time_s", "s", "time since the start", |v| v.state.time_s)
+                .within(0.0, 3600.0)
+                .seen(rank::TIME),
+            function("speed_m_s", "m/s", "vehicle speed at the end of the step", speed)
+                .within(0.0, 40.0)
+                .seen(rank::SPEED),
+            function("ambient_temperature_degc", "degC", "ambient air", |v| {
+                v.disturbance.air.temperature_k - ZERO_CELSIUS_K
+            })
+            .within(-40.0, 50.0)
+            .seen(rank::AMBIENT),
+        ]);
+    }
+
+    /// Cabins, powertrain, stores, loops.
+    fn add_temperatures(&mut self, layout: &Layout) {
+        let row = |node: Node, bounds: Option<(f64, f64, u8)>| {
+            let named = &layout.nodes[node.index()];
+            let name = format!("{}_temperature_degc", named.stem);
+            let signal = plain(name, "degC", named.description.clone(), Reader::Temperature(node));
+            match bounds {
+                Some((low, high, rank)) => signal.within(low, high).seen(rank),
+                None => signal,
+            }
+        };
+        for cabin in &layout.cabins {
+            self.rows.push(row(cabin.air, Some((-40.0, 80.0, rank::CABIN))));
+            self.rows.extend([cabin.exhaust, cabin.soft, cabin.hard].map(|node| row(node, None)));
+        }
+        for mass in &layout.masses {
+            let bounds = match layout.members[mass.member].kind {
+                MemberKind::Battery => (-40.0, 60.0, rank::BATTERY),
+                MemberKind::Motor => (-40.0, 120.0, rank::MOTOR),
+                MemberKind::Transmission => (-40.0, 120.0, rank::TRANSMISSION),
+                _ => (-40.0, 100.0, rank::STORE),
+            };
+            self.rows.push(row(mass.node, Some(bounds)));
+        }
+        for circuit in &layout.loops {
+            let hot = circuit.side == crate::architecture::declaration::Side::Hot;
+            let bounds = (-40.0, if hot { 100.0 } else { 60.0 }, rank::LOOP);
+            self.rows.extend([circuit.supply, circuit.back].map(|node| row(node, Some(bounds))));
         }
     }
 
-    /// The node whose temperature it shows in degC, if it shows one.
-    #[must_use]
-    pub fn node(&self) -> Option<Node> {
-        match self.reader {
-            Reader::Temperature(node) => Some(node),
-            Reader::Function(_) | Reader::Flow(_) | Reader::Connection(_) => None,
+    fn add_battery(&mut self) {
+        let usable = |v: &View<'_>| {
+            let battery_k = v.state.temperatures_k[v.plant.layout().battery.index()];
+            v.plant.battery.usable_state_of_charge(&v.state.battery, battery_k)
+        };
+        self.rows.extend([
+            function(
+                "soc",
+                "-",
+                "state of charge of equation (6), against the capacity usable at the present temperature",
+                usable,
+            )
+            .within(0.0, 1.0)
+            .seen(rank::CHARGE),
+            function("charge_soc", "-", "state of charge by charge alone", |v| {
+                v.plant.battery.state_of_charge(&v.state.battery)
+            })
+            .within(0.0, 1.0),
+            function("battery_voltage_v", "V", "mean terminal voltage", |v| {
+                v.recorded(|r| r.battery_voltage_v)
+            })
+            .within(250.0, 500.0),
+            function("battery_current_a", "A", "mean pack current, positive while discharging", |v| {
+                v.recorded(|r| r.battery_current_a)
+            }),
+            function("battery_charge_limit_w", "W", "largest charging power", |v| {
+                v.recorded(|r| r.power_limits.charge_w)
+            })
+            .within(0.0, 150_000.0)
+            .seen(rank::CHARGE_LIMIT),
+            function("battery_discharge_limit_w", "W", "largest discharging power", |v| {
+                v.recorded(|r| r.power_limits.discharge_w)
+            })
+            .within(0.0, 250_000.0)
+            .seen(rank::DISCHARGE_LIMIT),
+            function("auxiliary_power_w", "W", "12 V load, pumps, blower and fan", |v| {
+                v.recorded(|r| r.flows.sum_w(&v.plant.layout().base_loads))
+            })
+            .within(0.0, 1500.0)
+            .seen(rank::AUXILIARY),
+        ]);
+    }
+
+    fn add_loops(&mut self, layout: &Layout) {
+        for (place, circuit) in layout.loops.iter().enumerate() {
+            let (name, text) =
+                (format!("{}_flow_kg_s", circuit.name), format!("{} coolant flow", circuit.label));
+            let signal = plain(name, "kg/s", text, Reader::LoopFlow(place as u8));
+            self.rows.push(signal.within(0.0, 0.5).seen(rank::LOOP_FLOW));
         }
     }
 
-    /// Value at a view.
-    #[must_use]
-    #[inline(always)]
-    pub fn read(&self, view: &View<'_>) -> f64 {
-        match self.reader {
-            Reader::Function(read) => read(view),
-            Reader::Temperature(node) => view.state.temperatures_k[node.index()] - ZERO_CELSIUS_K,
-            Reader::Flow(flow) => view.recorded(|record| record.flows[flow]),
-            Reader::Connection(member) => match view.state.connection(member) {
-                Connection::Isolated => 0.0,
-                Connection::Htc => 1.0,
-                Connection::Chiller => 2.0,
-            },
+    fn add_refrigeration(&mut self) {
+        self.rows.extend([
+            function("compressor_demand_w", "W", "compressor power asked for", |v| {
+                v.recorded(|r| r.demanded_w)
+            }),
+            function("compressor_speed_rev_s", "rev/s", "compressor speed", |v| {
+                v.recorded(|r| r.refrigeration.speed_rev_s)
+            })
+            .within(0.0, 150.0)
+            .seen(rank::COMPRESSOR_SPEED),
+            function("compressor_starts", "-", "compressor starts so far", |v| {
+                f64::from(v.state.refrigeration.compressor.starts)
+            })
+            .within(0.0, 100.0),
+            function("protection_trips", "-", "compressor stops forced by a limit so far", |v| {
+                f64::from(v.state.refrigeration.compressor.protection_trips)
+            })
+            .within(0.0, 100.0),
+            function("condensing_pressure_bar", "bar", "condensing pressure", |v| {
+                v.recorded(|r| r.refrigeration.condensing_pressure_pa * 1e-5)
+            })
+            .seen(rank::CONDENSING),
+            function("evaporating_pressure_bar", "bar", "evaporating pressure", |v| {
+                v.recorded(|r| r.refrigeration.evaporating_pressure_pa * 1e-5)
+            })
+            .within(0.0, 10.0)
+            .seen(rank::EVAPORATING),
+            function("condensing_temperature_degc", "degC", "condensing temperature", |v| {
+                v.recorded(|r| r.refrigeration.condensing_temperature_k - ZERO_CELSIUS_K)
+            }),
+            function("evaporating_temperature_degc", "degC", "evaporating temperature", |v| {
+                v.recorded(|r| r.refrigeration.evaporating_temperature_k - ZERO_CELSIUS_K)
+            }),
+            function("discharge_temperature_degc", "degC", "gas at the compressor outlet", |v| {
+                v.recorded(|r| r.refrigeration.discharge_temperature_k - ZERO_CELSIUS_K)
+            })
+            .within(-40.0, 140.0)
+            .seen(rank::DISCHARGE),
+            function("refrigerant_flow_kg_s", "kg/s", "refrigerant mass flow", |v| {
+                v.recorded(|r| r.refrigeration.mass_flow_kg_s)
+            })
+            .within(0.0, 0.1),
+            function(
+                "refrigeration_status",
+                "-",
+                "how the refrigerant solve ended, position in its list of statuses",
+                |v| v.recorded(|r| f64::from(r.refrigeration.status as u8)),
+            ),
+            function("cop", "-", "condenser heat flow over compressor power; 0 at rest", |v| {
+                v.recorded(|r| {
+                    let power_w = r.flows[Flow::COMPRESSOR];
+                    if power_w > 0.0 { r.flows[Flow::CONDENSER] / power_w } else { 0.0 }
+                })
+            }),
+        ]);
+    }
+
+    fn add_checks(&mut self) {
+        self.rows.extend([
+            function(
+                "loads_shed",
+                "-",
+                "1 while thermal loads are cut because the battery cannot feed them",
+                |v| v.recorded(|r| f64::from(u8::from(r.loads_shed))),
+            )
+            .within(0.0, 1.0),
+            function("energy_residual_w", "W", "residual of the energy ledger", |v| {
+                v.recorded(|r| r.ledger.residual_w)
+            }),
+            function("energy_scale_w", "W", "power in play that the residual is compared with", |v| {
+                v.recorded(|r| r.ledger.scale_w)
+            }),
+        ]);
+    }
+
+    fn add_connections(&mut self, layout: &Layout) {
+        let loops = layout.loops.iter().enumerate();
+        let loops =
+            loops.map(|(place, circuit)| format!("{} {}", place + 1, circuit.label)).collect::<Vec<_>>();
+        let text = format!("loop that it is connected to: 0 none, {}", loops.join(", "));
+        for (place, member) in
+            layout.members.iter().enumerate().filter(|(_, member)| !member.options.is_empty())
+        {
+            let name = format!("{}_connection", member.name);
+            self.rows.push(plain(name, "-", text.clone(), Reader::Connection(place as u8)));
+        }
+    }
+
+    fn add_flows(&mut self, layout: &Layout) {
+        for row in &layout.flows {
+            let signal = plain(row.column.clone(), "W", row.description.clone(), Reader::Flow(row.flow));
+            self.rows.push(match seen_flow(layout, row.flow) {
+                Some((low, high, rank)) => signal.within(low, high).seen(rank),
+                None => signal,
+            });
         }
     }
 }
 
-macro_rules! signals {
-    ($( $name:literal, $unit:literal, $description:literal, $reader:expr; )*) => {
-        &[$( Signal { name: $name, unit: $unit, description: $description, reader: $reader }, )*]
+/// Bounds and rank of a flow that agents see by default.
+fn seen_flow(layout: &Layout, flow: Flow) -> Option<(f64, f64, u8)> {
+    let fixed = match flow {
+        Flow::TRACTION => Some((-100_000.0, 100_000.0, rank::TRACTION)),
+        Flow::BATTERY => Some((-100_000.0, 100_000.0, rank::BATTERY_POWER)),
+        Flow::COMPRESSOR => Some((0.0, 5000.0, rank::COMPRESSOR_POWER)),
+        Flow::CONDENSER => Some((0.0, 15_000.0, rank::CONDENSER)),
+        Flow::EVAPORATOR => Some((0.0, 15_000.0, rank::EVAPORATOR)),
+        _ => None,
     };
-}
-
-const fn function(read: fn(&View<'_>) -> f64) -> Reader {
-    Reader::Function(read)
-}
-
-const fn temperature(node: Node) -> Reader {
-    Reader::Temperature(node)
-}
-
-const STATES: &[Signal] = signals! {
-    "time_s", "s", "time since the start", function(|v| v.state.time_s);
-    "speed_m_s", "m/s", "vehicle speed at the end of the step",
-        function(|v| if v.record.is_some() { v.disturbance.end_speed_m_s } else { v.disturbance.start_speed_m_s });
-    "ambient_temperature_degc", "degC", "ambient air", function(|v| v.disturbance.air.temperature_k - ZERO_CELSIUS_K);
-    "cabin_temperature_degc", "degC", "cabin, large air volume", temperature(NODES.cabin);
-    "exhaust_temperature_degc", "degC", "cabin, small exhaust volume", temperature(NODES.exhaust);
-    "soft_furnishings_temperature_degc", "degC", "seats, carpet", temperature(NODES.soft);
-    "hard_furnishings_temperature_degc", "degC", "dashboard, glass", temperature(NODES.hard);
-    "battery_temperature_degc", "degC", "battery", temperature(NODES.battery);
-    "motor_temperature_degc", "degC", "motor and inverter", temperature(NODES.motor);
-    "transmission_temperature_degc", "degC", "transmission", temperature(NODES.transmission);
-    "thermal_battery_temperature_degc", "degC", "thermal battery", temperature(NODES.thermal_battery);
-    "htc_supply_temperature_degc", "degC", "HTC after condenser, thermal battery and PTC",
-        temperature(NODES.htc_supply);
-    "htc_return_temperature_degc", "degC", "HTC before the condenser", temperature(NODES.htc_return);
-    "chiller_supply_temperature_degc", "degC", "chiller loop after the evaporator",
-        temperature(NODES.chiller_supply);
-    "chiller_return_temperature_degc", "degC", "chiller loop before the evaporator",
-        temperature(NODES.chiller_return);
-    "soc", "-", "state of charge of equation (6), against the capacity usable at the present temperature",
-        function(|v| v.plant.battery.usable_state_of_charge(&v.state.battery,
-            v.state.temperatures_k[v.plant.assembly.nodes.battery.index()]));
-    "charge_soc", "-", "state of charge by charge alone", function(|v| v.plant.battery.state_of_charge(&v.state.battery));
-    "battery_voltage_v", "V", "mean terminal voltage", function(|v| v.recorded(|r| r.battery_voltage_v));
-    "battery_current_a", "A", "mean pack current, positive while discharging", function(|v| v.recorded(|r| r.battery_current_a));
-    "battery_charge_limit_w", "W", "largest charging power", function(|v| v.recorded(|r| r.power_limits.charge_w));
-    "battery_discharge_limit_w", "W", "largest discharging power", function(|v| v.recorded(|r| r.power_limits.discharge_w));
-    "auxiliary_power_w", "W", "12 V load, pumps, blower and fan", function(|v| v.recorded(|r| r.flows.base_load_w()));
-    "htc_flow_kg_s", "kg/s", "HTC coolant flow", function(|v| v.state.htc_pump.flow_kg_s);
-    "chiller_flow_kg_s", "kg/s", "chiller coolant flow", function(|v| v.state.chiller_pump.flow_kg_s);
-    "compressor_demand_w", "W", "compressor power asked for", function(|v| v.recorded(|r| r.demanded_w));
-    "compressor_speed_rev_s", "rev/s", "compressor speed", function(|v| v.recorded(|r| r.refrigeration.speed_rev_s));
-    "compressor_starts", "-", "compressor starts so far", function(|v| f64::from(v.state.refrigeration.compressor.starts));
-    "protection_trips", "-", "compressor stops forced by a limit so far",
-        function(|v| f64::from(v.state.refrigeration.compressor.protection_trips));
-    "condensing_pressure_bar", "bar", "condensing pressure", function(|v| v.recorded(|r| r.refrigeration.condensing_pressure_pa * 1e-5));
-    "evaporating_pressure_bar", "bar", "evaporating pressure", function(|v| v.recorded(|r| r.refrigeration.evaporating_pressure_pa * 1e-5));
-    "condensing_temperature_degc", "degC", "condensing temperature",
-        function(|v| v.recorded(|r| r.refrigeration.condensing_temperature_k - ZERO_CELSIUS_K));
-    "evaporating_temperature_degc", "degC", "evaporating temperature",
-        function(|v| v.recorded(|r| r.refrigeration.evaporating_temperature_k - ZERO_CELSIUS_K));
-    "discharge_temperature_degc", "degC", "gas at the compressor outlet",
-        function(|v| v.recorded(|r| r.refrigeration.discharge_temperature_k - ZERO_CELSIUS_K));
-    "refrigerant_flow_kg_s", "kg/s", "refrigerant mass flow", function(|v| v.recorded(|r| r.refrigeration.mass_flow_kg_s));
-    "refrigeration_status", "-", "how the refrigerant solve ended, position in its list of statuses",
-        function(|v| v.recorded(|r| r.refrigeration.status as u8 as f64));
-    "cop", "-", "condenser heat flow over compressor power; 0 at rest",
-        function(|v| v.recorded(|r| {
-            let power_w = r.flows[Flow::Compressor];
-            if power_w > 0.0 { r.flows[Flow::Condenser] / power_w } else { 0.0 }
-        }));
-    "loads_shed", "-", "1 while thermal loads are cut because the battery cannot feed them",
-        function(|v| v.recorded(|r| f64::from(u8::from(r.loads_shed))));
-    "energy_residual_w", "W", "residual of the energy ledger", function(|v| v.recorded(|r| r.ledger.residual_w));
-    "energy_scale_w", "W", "power in play that the residual is compared with", function(|v| v.recorded(|r| r.ledger.scale_w));
-};
-
-const CONNECTIONS: [(&str, Member); 6] = [
-    ("battery_connection", Member::Battery),
-    ("motor_connection", Member::Motor),
-    ("transmission_connection", Member::Transmission),
-    ("ambient_connection", Member::Ambient),
-    ("thermal_battery_connection", Member::ThermalBattery),
-    ("cabin_connection", Member::Cabin),
-];
-
-const fn of_connection((name, member): (&'static str, Member)) -> Signal {
-    Signal {
-        name,
-        unit: "-",
-        description: "loop that it is connected to: 0 none, 1 HTC, 2 chiller",
-        reader: Reader::Connection(member),
+    if fixed.is_some() {
+        return fixed;
     }
-}
-
-const fn of_flow(flow: Flow) -> Signal {
-    Signal { name: flow.column(), unit: "W", description: flow.description(), reader: Reader::Flow(flow) }
-}
-
-/// The first of all signals.
-pub const TIME: Signal = STATES[0];
-
-/// Number of signals.
-const SIGNALS: usize = STATES.len() + CONNECTIONS.len() + Flow::ALL.len();
-
-/// The signal in a column.
-const fn at(column: usize) -> Signal {
-    const FIRST_FLOW: usize = STATES.len() + CONNECTIONS.len();
-    if column < STATES.len() {
-        STATES[column]
-    } else if column < FIRST_FLOW {
-        of_connection(CONNECTIONS[column - STATES.len()])
-    } else {
-        of_flow(Flow::ALL[column - FIRST_FLOW])
+    if layout.heaters.iter().any(|heater| heater.flow == flow) {
+        return Some((0.0, 6000.0, rank::HEATER_POWER));
     }
-}
-
-/// All signals, in column order.
-pub fn all() -> impl Iterator<Item = Signal> {
-    (0..SIGNALS).map(at)
-}
-
-/// The signal of a name; a program can ask for it while it is compiled.
-#[must_use]
-pub const fn find(name: &str) -> Option<Signal> {
-    let mut column = 0;
-    while column < SIGNALS {
-        let signal = at(column);
-        if same(signal.name.as_bytes(), name.as_bytes()) {
-            return Some(signal);
-        }
-        column += 1;
+    if layout.exchangers.iter().any(|exchanger| exchanger.flow == flow) {
+        return Some((0.0, 15_000.0, rank::EXCHANGER));
     }
-    None
-}
-
-/// Whether two strings are the same, which `==` does not tell while compiling.
-const fn same(one: &[u8], other: &[u8]) -> bool {
-    if one.len() != other.len() {
-        return false;
-    }
-    let mut place = 0;
-    while place < one.len() {
-        if one[place] != other[place] {
-            return false;
-        }
-        place += 1;
-    }
-    true
+    let branch = layout.branches.iter().find(|branch| branch.flow == flow)?;
+    let (most_w, place) = match layout.members[branch.member].kind {
+        MemberKind::Cabin => (10_000.0, 0),
+        MemberKind::Battery => (10_000.0, 1),
+        MemberKind::FrontEnd => (15_000.0, 2),
+        MemberKind::Motor => (10_000.0, 3),
+        MemberKind::Transmission => (10_000.0, 4),
+        MemberKind::Plate => (10_000.0, 5),
+        MemberKind::Store => return None,
+    };
+    Some((-most_w, most_w, rank::BRANCHES + place))
 }

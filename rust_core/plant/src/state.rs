@@ -1,16 +1,16 @@
 //! The whole state of a vehicle: plain data, so that a snapshot is a copy.
 
-use crate::circuits::branches::{BRANCH_COUNT, Branch};
+use crate::architecture::layout::{BRANCH_PLACES, FRONT_END_PLACES, HEATER_PLACES, LOOP_PLACES};
 use crate::circuits::refrigeration_loop::RefrigerationState;
-use crate::command::{Connection, Member};
 use crate::components::battery::BatteryState;
 use crate::components::pid::ResetPid;
 use crate::components::pump::PumpState;
-use crate::control::thermal_switch::ThermalSwitches;
+use crate::components::thermal_switch::ThermalSwitches;
 use crate::numerics::thermal_network::NodeValues;
 use serde::{Deserialize, Serialize};
 
-/// State of the plant, its own controllers included.
+/// State of the plant, its own controllers included. Arrays are in the order of the architecture's layout; what a vehicle
+/// does not have stays 0.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Time since the start [s].
@@ -20,35 +20,25 @@ pub struct State {
     /// Battery charge and polarisation.
     pub battery: BatteryState,
     /// Which branches are connected.
-    pub connected: [bool; BRANCH_COUNT],
+    pub connected: [bool; BRANCH_PLACES],
     /// Thermal switches.
     pub switches: ThermalSwitches,
-    /// HTC pump.
-    pub htc_pump: PumpState,
-    /// Chiller pump.
-    pub chiller_pump: PumpState,
-    /// PTC controller.
-    pub ptc_pid: ResetPid,
+    /// Pumps, by loop.
+    pub pumps: [PumpState; LOOP_PLACES],
+    /// Controllers of the heaters.
+    pub heater_pids: [ResetPid; HEATER_PLACES],
     /// Compressor power against condensing pressure.
     pub pressure_pid: ResetPid,
     /// Compressor envelope and last solution of the refrigerant loop.
     pub refrigeration: RefrigerationState,
     /// Condensing pressure at the end of the last step [Pa].
     pub condensing_pressure_pa: f64,
-    /// Condenser heat flow of the last step [W].
-    pub condenser_heat_flow_w: f64,
-    /// PTC power of the last step [W].
-    pub ptc_power_w: f64,
+    /// Heat that each loop's exchanger brought in the last step [W].
+    pub entered_w: [f64; LOOP_PLACES],
+    /// Heat that each front-end exchanger gave to the air in the last step [W].
+    pub front_end_w: [f64; FRONT_END_PLACES],
+    /// Power of all heaters in the last step [W].
+    pub heater_power_w: f64,
     /// Compressor power of the last step [W].
     pub compressor_power_w: f64,
-}
-
-impl State {
-    /// Which loop a member is connected to.
-    #[must_use]
-    pub fn connection(&self, member: Member) -> Connection {
-        let own = |(branch, on): &(Branch, bool)| *on && branch.member() == member;
-        let connected = Branch::ALL.into_iter().zip(self.connected).find(own);
-        connected.map_or(Connection::Isolated, |(branch, _)| branch.connection())
-    }
 }

@@ -13,7 +13,7 @@ use hp_plant::config::Validate;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use std::cell::Cell;
-use support::{boundary, cycle, parameters};
+use support::{CONDENSER_UA_W_K, EVAPORATOR_UA_W_K, boundary, cycle, parameters};
 
 const CASES: u32 = if cfg!(debug_assertions) { 5_000 } else { 50_000 };
 const SPEED_LIMIT: f64 = 140.0;
@@ -76,8 +76,8 @@ fn check_running(
     r: &LoopResult,
 ) -> Result<(), TestCaseError> {
     let p = parameters();
-    let evaporator = inlet_conductance_w_k(b.cold_capacity_rate_w_k, p.evaporator_ua_w_k);
-    let condenser = inlet_conductance_w_k(b.hot_capacity_rate_w_k, p.condenser_ua_w_k);
+    let evaporator = inlet_conductance_w_k(b.cold_capacity_rate_w_k, EVAPORATOR_UA_W_K);
+    let condenser = inlet_conductance_w_k(b.hot_capacity_rate_w_k, CONDENSER_UA_W_K);
     let taken = evaporator * (b.cold_return_k - r.evaporating_temperature_k);
     let given = condenser * (r.condensing_temperature_k - b.hot_return_k);
     prop_assert!((taken - r.evaporator_heat_flow_w).abs() < 0.1, "evaporator {taken}: {r:?}");

@@ -7,11 +7,12 @@
 mod workload;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use hp_plant::circuits::assembly::{LinkConditions, NODES};
-use hp_plant::circuits::branches::{BRANCH_PLACES, Branch};
+use hp_plant::architecture::layout::{CABIN_PLACES, FRONT_END_PLACES, WEIGHT_PLACES};
 use hp_plant::circuits::refrigeration_loop::{LoopDemand, SupplyLimit, WarmStart};
 use hp_plant::components::exhaust_recovery::ExhaustRecovery;
-use hp_plant::numerics::thermal_network::NodeValues;
+use hp_plant::network::conditions::{CabinConditions, Conditions, Constants, state};
+use hp_plant::numerics::planned_network::{PlannedNetwork, PlannedStep};
+use hp_plant::numerics::thermal_network::{LinkState, MAXIMUM_LINKS, NodeValues};
 use hp_plant::plant::StepRecord;
 use hp_trip::experiment::Experiment;
 use hp_trip::run::Run;
@@ -22,8 +23,10 @@ use workload::{Segment, compressor_on_segments, random_segments};
 fn steps(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("plant step");
     group.sample_size(10);
-    let workloads: [(&str, Vec<Segment>); 2] =
-        [("HPCU, compressor on", compressor_on_segments()), ("random actions", random_segments())];
+    let workloads: [(&str, Vec<Segment>); 2] = [
+        ("HPCU, compressor on", compressor_on_segments(workload::Executor::Own)),
+        ("random actions", random_segments(workload::Executor::Own)),
+    ];
     for (name, segments) in workloads {
         group.throughput(Throughput::Elements(segments.iter().map(|segment| segment.steps as u64).sum()));
         group.bench_function(name, |bencher| {
@@ -47,11 +50,11 @@ fn moment(scenario: &str, after_s: usize) -> (Experiment, Run, StepRecord) {
 
 fn refrigerant(criterion: &mut Criterion) {
     let (experiment, _, record) = moment("jeffs2019/case1-4", 600);
-    let cycle = &experiment.plant.refrigeration;
+    let cycle = experiment.plant.refrigeration.as_ref().expect("it has a heat pump");
     let boundary = record.boundary;
     let demand = LoopDemand {
         power_limit_w: record.refrigeration.electric_power_w,
-        speed_limit_rev_s: experiment.plant.vehicle.refrigeration.compressor.maximum_speed_rev_s,
+        speed_limit_rev_s: cycle.parameters().compressor.maximum_speed_rev_s,
         hold_minimum_speed: false,
     };
     let solution = record.refrigeration;
@@ -83,32 +86,72 @@ fn refrigerant(criterion: &mut Criterion) {
 fn network(criterion: &mut Criterion) {
     let (experiment, run, _) = moment("jeffs2019/case1-4", 600);
     let plant = &experiment.plant;
-    let mut branches_w_k = [0.0; BRANCH_PLACES];
-    for branch in [Branch::CabinHtc, Branch::MotorChiller, Branch::BatteryChiller, Branch::AmbientChiller] {
-        branches_w_k[branch as usize] = 150.0;
+    let layout = plant.layout();
+    let mut branches_w_k = [0.0; _];
+    for (member, circuit) in
+        [("cabin", "htc"), ("motor", "chiller"), ("battery", "chiller"), ("ambient", "chiller")]
+    {
+        let place = layout.member(member).zip(layout.circuit(circuit));
+        let branch =
+            place.and_then(|(member, circuit)| layout.branch(member, circuit)).expect("the default has it");
+        branches_w_k[branch] = 150.0;
     }
-    let now = LinkConditions {
-        htc_rate_w_k: 900.0,
-        chiller_rate_w_k: 900.0,
-        branches_w_k,
-        ventilation: plant.vehicle.cabin.ventilation(0.5, 0.3, 1.0),
-        recovery: ExhaustRecovery { conductance_w_k: 20.0, meets_chiller: false },
-        speed_m_s: 20.0,
-        battery_ambient_w_k: 10.0,
+    let mut cabins = [CabinConditions::default(); CABIN_PLACES];
+    cabins[0] = CabinConditions {
+        ventilation: plant.vehicle.cabin().ventilation(0.5, 0.3, 1.0),
+        recovery: ExhaustRecovery { conductance_w_k: 20.0, meets_loop: false },
+        panel_w_k: plant.vehicle.cabin().panel_conductance_w_k(20.0),
+    };
+    let constants = Constants { half_hoses_w_k: [5.0; _], soft_w_k: [50.0; _], hard_w_k: [60.0; _] };
+    let now = Conditions {
+        rates_w_k: &[900.0; _],
+        branches_w_k: &branches_w_k,
+        masses_w_k: [10.0; _],
+        cabins,
+        weights: [0.0; WEIGHT_PLACES],
+        front_end_air_k: &[263.15; FRONT_END_PLACES],
         ambient_k: 263.15,
     };
+    let ports: Vec<_> = layout.links.iter().map(|link| link.ports).collect();
+    let known_first: Vec<_> = layout.inlets.iter().rev().map(|inlet| inlet.supply).collect();
+    let network = PlannedNetwork::new(layout.nodes.len(), &ports, &known_first);
+    let assemble = |now: &Conditions<'_>, step: &mut PlannedStep| {
+        let mut links = [LinkState::OPEN; MAXIMUM_LINKS];
+        for (place, link) in links.iter_mut().zip(&layout.links) {
+            *place = state(link.law, now, &constants);
+        }
+        network.factorise(plant.network.capacities_j_k(), &links, 1.0, step);
+    };
+    let (mut factors, start_k) = (PlannedStep::default(), run.state.temperatures_k);
     let mut sources_w = NodeValues::default();
-    sources_w[NODES.htc_supply.index()] = 3000.0;
-    let links = plant.assembly.links(&plant.vehicle, &now);
-    let factorised = plant.assembly.network.factorise(&links, 1.0);
-    let start_k = run.state.temperatures_k;
+    sources_w[layout.loops[0].supply.index()] = 3000.0;
+    assemble(&now, &mut factors);
     let mut group = criterion.benchmark_group("thermal network");
     group.bench_function("assemble and factorise", |b| {
-        b.iter(|| plant.assembly.network.factorise(black_box(&links), black_box(1.0)));
+        b.iter(|| assemble(black_box(&now), black_box(&mut PlannedStep::default())));
     });
     group.bench_function("solve", |b| {
-        b.iter(|| factorised.advance(black_box(&start_k), black_box(&sources_w)))
+        b.iter(|| network.advance(&factors, black_box(&start_k), black_box(&sources_w)));
     });
+    group.finish();
+}
+
+/// A second after ten minutes, by the executor that was compiled and by the one for any architecture.
+fn executors(criterion: &mut Criterion) {
+    let (experiment, mut run, _) = moment("jeffs2019/case1-4", 600);
+    let command = experiment.rule_based_command(&mut run);
+    let disturbance = experiment.disturbance(run.steps);
+    let planned = (*experiment.plant).clone().with_planned_network();
+    let mut group = criterion.benchmark_group("one second");
+    for (name, plant) in [("compiled", &*experiment.plant), ("planned", &planned)] {
+        group.bench_function(name, |bencher| {
+            bencher.iter_batched_ref(
+                || run.state,
+                |state| black_box(plant.step(state, &command, &disturbance)),
+                BatchSize::SmallInput,
+            );
+        });
+    }
     group.finish();
 }
 
@@ -123,5 +166,5 @@ fn controller(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, steps, refrigerant, network, controller);
+criterion_group!(benches, steps, refrigerant, network, executors, controller);
 criterion_main!(benches);

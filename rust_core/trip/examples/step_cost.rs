@@ -2,14 +2,15 @@
 //!
 //! `cargo run --release -p hp_trip --example step_cost -- heating` replays the compressor-on steps of the paper's
 //! nine scenarios with the HPCU; `random` drives all built-in scenarios with random actions each second. A second
-//! argument is the number of repetitions; of each stretch the fastest counts. For instructions by function:
+//! argument is the number of repetitions; of each stretch the fastest counts. A third one, `planned`, takes the executor for any
+//! architecture. For instructions by function:
 //! `valgrind --tool=callgrind --toggle-collect='*measured*' target/release/examples/step_cost heating 1`.
 
 #[path = "../benches/support/workload.rs"]
 mod workload;
 
 use std::time::Instant;
-use workload::{Segment, compressor_on_segments, random_segments};
+use workload::{Executor, Segment, compressor_on_segments, random_segments};
 
 /// The part that is timed and counted.
 #[inline(never)]
@@ -21,9 +22,14 @@ fn main() {
     let mut arguments = std::env::args().skip(1);
     let kind = arguments.next().unwrap_or_else(|| "heating".to_owned());
     let repetitions: u32 = arguments.next().and_then(|text| text.parse().ok()).unwrap_or(20);
+    let executor = match arguments.next().as_deref() {
+        None => Executor::Own,
+        Some("planned") => Executor::Planned,
+        Some(other) => panic!("`{other}` is no executor; there is planned"),
+    };
     let segments = match kind.as_str() {
-        "heating" => compressor_on_segments(),
-        "random" => random_segments(),
+        "heating" => compressor_on_segments(executor),
+        "random" => random_segments(executor),
         other => panic!("`{other}` is no workload; there are heating and random"),
     };
     let steps: usize = segments.iter().map(|segment| segment.steps).sum();

@@ -3,8 +3,9 @@
 use crate::controllers::Rules;
 use crate::controllers::file::Controller;
 use crate::drive_cycle::DriveCycle;
+use crate::heat_demand_commander::HeatDemandCommander;
 use crate::kinds::SCENARIO;
-use crate::scenario::{ClimateParameters, ScenarioParameters};
+use crate::scenario::{ClimateParameters, ScenarioParameters, known_member};
 use hp_plant::config::initial::InitialParameters;
 use hp_plant::config::library::{self, Override};
 use hp_plant::error::{PlantError, PlantResult};
@@ -33,6 +34,8 @@ pub struct Experiment {
     pub controller_file: Arc<Controller>,
     /// Rule-based controller of this scenario.
     pub rules: Arc<Rules>,
+    /// Requested heat flows and scheduled connections.
+    pub commander: Arc<HeatDemandCommander>,
 }
 
 impl Experiment {
@@ -41,6 +44,19 @@ impl Experiment {
     /// # Errors
     /// Anything wrong in one of its files or in an override.
     pub fn load(scenario: &str, controller: Option<&str>, overrides: &[Override]) -> PlantResult<Self> {
+        Self::with_vehicle(scenario, None, controller, overrides)
+    }
+
+    /// [`Self::load`] with another vehicle than that of the scenario, by name or path.
+    ///
+    /// # Errors
+    /// Anything wrong in one of its files or in an override, or a member that the vehicle cannot have.
+    pub fn with_vehicle(
+        scenario_name: &str,
+        vehicle: Option<&str>,
+        controller: Option<&str>,
+        overrides: &[Override],
+    ) -> PlantResult<Self> {
         let part = |prefix: &str| -> Vec<Override> {
             let stripped = |change: &Override| {
                 let key = change.key.strip_prefix(prefix)?.strip_prefix('.')?.to_owned();
@@ -57,19 +73,36 @@ impl Experiment {
                 allowed: format!("must begin with one of {}", known.join(", ")),
             });
         }
-        let scenario: ScenarioParameters = library::load(SCENARIO, scenario, &part("scenario"))?;
+        let mut scenario: ScenarioParameters = library::load(SCENARIO, scenario_name, &part("scenario"))?;
+        if let Some(vehicle) = vehicle {
+            vehicle.clone_into(&mut scenario.vehicle);
+        }
         let controller = controller.unwrap_or(&scenario.controller).to_owned();
         let file = Arc::new(Controller::load(&controller, &part("controller"))?);
+        let plant = Arc::new(Plant::load(&scenario.vehicle, &part("vehicle"))?);
+        let layout = plant.layout();
+        scenario.check_members(layout).map_err(|violation| violation.in_file(scenario_name))?;
+        for member in file.members() {
+            known_member(layout, "strategy", member).map_err(|violation| violation.in_file(&controller))?;
+        }
+        let commander = HeatDemandCommander::of(
+            &scenario.heat_demand,
+            &scenario.connection_schedule,
+            plant.ranges.idle(),
+            layout,
+        )
+        .map_err(|violation| violation.in_file(scenario_name))?;
         Ok(Self {
-            plant: Arc::new(Plant::load(&scenario.vehicle, &part("vehicle"))?),
             cycle: DriveCycle::load(&scenario.cycle)?,
             controller: controller.into(),
-            rules: Arc::new(file.at(scenario.climate.ambient_temperature_degc, &scenario.strategy)),
+            rules: Arc::new(file.at(scenario.climate.ambient_temperature_degc, &scenario.strategy, layout)),
             controller_file: file,
+            commander: Arc::new(commander),
             air: scenario.climate.air(),
             climate: scenario.climate.clone(),
             initial: scenario.initial.clone(),
             scenario: Arc::new(scenario),
+            plant,
         })
     }
 

@@ -2,12 +2,11 @@
 
 use crate::controllers::RuleMemory;
 use crate::experiment::Experiment;
-use crate::heat_demand_commander;
-use crate::summary::Summary;
-use hp_plant::command::Command;
+use crate::summary::{Summary, supplies_k};
+use hp_plant::command::{Command, Demand};
 use hp_plant::flows::Flow;
 use hp_plant::plant::StepRecord;
-use hp_plant::signals::{self, View};
+use hp_plant::signals::View;
 use hp_plant::state::State;
 use serde::{Deserialize, Serialize};
 
@@ -55,7 +54,7 @@ pub struct Run {
 /// Columns of a run, one row a second, the state at the start included.
 #[derive(Debug, Clone)]
 pub struct Trajectory {
-    /// Number of columns, those of [`signals::all`].
+    /// Number of columns, those of the plant's signals.
     pub columns: usize,
     /// Values, row by row.
     pub values: Vec<f64>,
@@ -79,30 +78,38 @@ impl Experiment {
         }
     }
 
-    /// Command of the rules, heatDemandCommander and connection schedule for the next step.
-    pub fn rule_based_command(&self, run: &mut Run) -> Command {
+    /// Demand of the rules, heatDemandCommander and connection schedule for the next step.
+    #[must_use]
+    pub fn demand(&self, run: &mut Run) -> Demand {
+        let mut demand = *self.commander.constant();
+        self.enter_demand(run, &mut demand);
+        demand
+    }
+
+    #[inline(always)]
+    fn enter_demand(&self, run: &mut Run, demand: &mut Demand) {
         let time_s = run.state.time_s;
-        let requests_w = heat_demand_commander::requests_w(&self.scenario.heat_demand, time_s);
-        let mut demand = self.rules.demand(&self.plant, &run.state, &mut run.memory, &requests_w);
-        heat_demand_commander::apply_schedule(
-            &self.scenario.connection_schedule,
-            time_s,
-            &mut demand.connections,
-        );
+        self.commander.change_requests(time_s, demand);
+        self.rules.demand(&self.plant, &run.state, &mut run.memory, demand);
+        self.commander.apply_schedule(time_s, demand);
+    }
+
+    /// [`Self::demand`] as a command.
+    pub fn rule_based_command(&self, run: &mut Run) -> Command {
+        let mut demand = *self.commander.constant();
+        self.enter_demand(run, &mut demand);
         self.plant.ranges.encode(&demand)
     }
 
     /// One step with a command; tells why the run is over, if it is.
     pub fn step(&self, run: &mut Run, command: &Command) -> Option<EndReason> {
         let disturbance = self.disturbance(run.steps);
-        let nodes = &self.plant.assembly.nodes;
-        let supplies_before_k =
-            [nodes.htc_supply, nodes.chiller_supply].map(|node| run.state.temperatures_k[node.index()]);
+        let supplies_before_k = supplies_k(self.plant.layout(), &run.state);
         let record = run.record.get_or_insert_default();
         self.plant.step_into(&mut run.state, command, &disturbance, record);
         run.steps += 1;
-        run.summary.add(&self.plant, supplies_before_k, &run.state, record, &disturbance);
-        if run.summary.energy_j(Flow::Unserved) > TOLERATED_UNSERVED_J {
+        run.summary.add(&self.plant, &supplies_before_k, &run.state, record, &disturbance);
+        if run.summary.energy_j(Flow::UNSERVED) > TOLERATED_UNSERVED_J {
             Some(EndReason::UnservedEnergy)
         } else if run.summary.final_soc() <= 0.0 {
             Some(EndReason::BatteryEmpty)
@@ -122,13 +129,13 @@ impl Experiment {
             record: run.record.as_ref(),
             disturbance: &disturbance,
         };
-        row.extend(signals::all().map(|signal| signal.read(&view)));
+        row.extend(self.plant.signals.rows().iter().map(|signal| signal.reader.read(&view)));
     }
 
     /// Runs to the end with the rule-based controller.
     #[must_use]
     pub fn simulate(&self) -> Trajectory {
-        let columns = signals::all().count();
+        let columns = self.plant.signals.rows().len();
         let mut values = Vec::with_capacity(columns * (self.cycle.duration_s() + 1));
         let mut run = self.start();
         self.look(&run, &mut values);

@@ -2,14 +2,17 @@
 
 use crate::heat_demand_commander::{ConnectionChange, HeatDemandParameters, check_order};
 use crate::strategy::Strategy;
+use hp_plant::architecture::declaration::among;
+use hp_plant::architecture::layout::Layout;
 use hp_plant::config::initial::InitialParameters;
+use hp_plant::config::vehicle::built_in_members;
 use hp_plant::config::{Celsius, Validate, Violation};
 use hp_plant::media::air::{self, AirProperties};
 use hp_plant::parameters;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 /// Everything that defines a run except the numbers of vehicle and controller.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioParameters {
     /// What this scenario is, in a sentence.
@@ -53,21 +56,42 @@ impl ClimateParameters {
     }
 }
 
+impl ScenarioParameters {
+    /// Checks that the members it names are those of a vehicle, or of a built-in architecture: scenarios are driven with cars
+    /// that lack some of them.
+    ///
+    /// # Errors
+    /// The first name that is neither.
+    pub fn check_members(&self, layout: &Layout) -> Result<(), Violation> {
+        let strategy = self.strategy.members.keys().map(|member| ("strategy", member.as_str()));
+        let requests = self.heat_demand.constants_w.keys().map(|member| ("heat_demand", member.as_str()));
+        let initial = self.initial.members().map(|member| ("initial", member));
+        strategy
+            .chain(requests)
+            .chain(initial)
+            .try_for_each(|(key, member)| known_member(layout, key, member))
+    }
+}
+
+/// Checks that a member is one of a vehicle or of a built-in architecture.
+///
+/// # Errors
+/// It is neither.
+pub fn known_member(layout: &Layout, key: &str, member: &str) -> Result<(), Violation> {
+    let built_in = built_in_members();
+    if layout.member(member).is_some() || built_in.iter().any(|known| known == member) {
+        return Ok(());
+    }
+    let names: Vec<&str> = layout.members.iter().map(|member| member.name.as_str()).collect();
+    Err(Violation::new(key, format!("for `{member}`"), among(&names, member)))
+}
+
 impl Validate for ScenarioParameters {
     fn validate(&self) -> Result<(), Violation> {
         self.climate.validate().map_err(|violation| violation.within("climate"))?;
         self.initial.validate().map_err(|violation| violation.within("initial"))?;
         self.heat_demand.validate().map_err(|violation| violation.within("heat_demand"))?;
         check_order("connection_schedule", self.connection_schedule.iter().map(|change| change.from_s))?;
-        for (i, change) in self.connection_schedule.iter().enumerate() {
-            if !change.member.options().contains(&change.connection) {
-                return Err(Violation::new(
-                    format!("connection_schedule[{i}].connection"),
-                    format!("{:?}", change.connection).to_lowercase(),
-                    format!("must be one of {:?}", change.member.options()).to_lowercase(),
-                ));
-            }
-        }
         Ok(())
     }
 }

@@ -1,6 +1,7 @@
 //! What a rule-based controller may use: the test cases of paper section 2.6.
 
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// How the rules treat the battery.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -27,61 +28,56 @@ pub enum ClimateControl {
 }
 
 /// What the rules may use.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Strategy {
     /// Battery.
     pub battery: BatteryTreatment,
     /// Cabin.
     pub climate_control: ClimateControl,
-    /// Motor and inverter as heat source.
-    pub motor: bool,
-    /// Transmission as heat source.
-    pub transmission: bool,
-    /// Ambient as heat source.
-    pub ambient: bool,
-    /// Thermal battery.
-    pub thermal_battery: bool,
-    /// PTC heater.
+    /// Heaters.
     pub ptc: bool,
     /// Heat pump; without it the compressor stays off (ours).
     #[serde(default = "yes")]
     pub heat_pump: bool,
+    /// Sources and stores by name; one that is not named is not used.
+    #[serde(flatten)]
+    pub members: BTreeMap<String, bool>,
+}
+
+impl Strategy {
+    /// Whether a source or store may be used.
+    #[must_use]
+    pub fn uses(&self, member: &str) -> bool {
+        self.members.get(member).copied().unwrap_or(false)
+    }
 }
 
 /// What a controller changes in a strategy; the rest stays as the scenario has it (ours).
-#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 pub struct StrategyChanges {
     /// Battery.
     pub battery: Option<BatteryTreatment>,
-    /// Motor and inverter as heat source.
-    pub motor: Option<bool>,
-    /// Transmission as heat source.
-    pub transmission: Option<bool>,
-    /// Ambient as heat source.
-    pub ambient: Option<bool>,
-    /// Thermal battery.
-    pub thermal_battery: Option<bool>,
-    /// PTC heater.
+    /// Heaters.
     pub ptc: Option<bool>,
     /// Heat pump.
     pub heat_pump: Option<bool>,
+    /// Sources and stores by name.
+    #[serde(flatten)]
+    pub members: BTreeMap<String, bool>,
 }
 
 impl StrategyChanges {
     /// A strategy with these changes.
     #[must_use]
     pub fn applied_to(&self, strategy: &Strategy) -> Strategy {
+        let mut members = strategy.members.clone();
+        members.extend(self.members.clone());
         Strategy {
             battery: self.battery.unwrap_or(strategy.battery),
             climate_control: strategy.climate_control,
-            motor: self.motor.unwrap_or(strategy.motor),
-            transmission: self.transmission.unwrap_or(strategy.transmission),
-            ambient: self.ambient.unwrap_or(strategy.ambient),
-            thermal_battery: self.thermal_battery.unwrap_or(strategy.thermal_battery),
             ptc: self.ptc.unwrap_or(strategy.ptc),
             heat_pump: self.heat_pump.unwrap_or(strategy.heat_pump),
+            members,
         }
     }
 }

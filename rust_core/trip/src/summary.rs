@@ -1,8 +1,10 @@
 //! Totals of a run.
 
-use hp_plant::config::ZERO_CELSIUS_K;
+use hp_plant::architecture::declaration::Side;
+use hp_plant::architecture::layout::{LOOP_PLACES, Layout};
 use hp_plant::config::vehicle::VehicleParameters;
-use hp_plant::flows::{FLOW_COUNT, Flow, Flows};
+use hp_plant::config::{Celsius, ZERO_CELSIUS_K};
+use hp_plant::flows::{Flow, Flows};
 use hp_plant::plant::{CONTROL_PERIOD_S, Disturbance, Plant, StepRecord};
 use hp_plant::state::State;
 use serde::{Deserialize, Serialize};
@@ -22,14 +24,34 @@ const TEMPERATURE_TOLERANCE_K: f64 = 0.1;
 
 /// Limits that a run of a vehicle is judged by, by name.
 #[must_use]
-pub fn limits(vehicle: &VehicleParameters) -> [(&'static str, f64); 5] {
-    [
-        ("cabin_lowest_degc", COMFORT_TEMPERATURE_DEGC - COMFORT_BAND_K),
-        ("cabin_highest_degc", COMFORT_TEMPERATURE_DEGC + COMFORT_BAND_K),
-        ("htc_supply_highest_degc", vehicle.htc.maximum_supply_degc.0),
-        ("chiller_supply_lowest_degc", vehicle.chiller.minimum_supply_degc.0),
-        ("condensing_pressure_highest_bar", vehicle.refrigeration.maximum_pressure_bar),
-    ]
+pub fn limits(vehicle: &VehicleParameters) -> Vec<(String, f64)> {
+    let mut limits = vec![
+        ("cabin_lowest_degc".to_owned(), COMFORT_TEMPERATURE_DEGC - COMFORT_BAND_K),
+        ("cabin_highest_degc".to_owned(), COMFORT_TEMPERATURE_DEGC + COMFORT_BAND_K),
+    ];
+    for (circuit, parameters) in vehicle.layout.loops.iter().zip(&vehicle.loops) {
+        if let Some(highest) = parameters.maximum_supply_degc {
+            limits.push((format!("{}_supply_highest_degc", circuit.name), highest.0));
+        }
+        if let Some(lowest) = parameters.minimum_supply_degc {
+            limits.push((format!("{}_supply_lowest_degc", circuit.name), lowest.0));
+        }
+    }
+    if let Some(refrigeration) = &vehicle.refrigeration {
+        limits.push(("condensing_pressure_highest_bar".to_owned(), refrigeration.maximum_pressure_bar));
+    }
+    limits
+}
+
+/// Supply temperature of each loop [K].
+#[must_use]
+#[inline]
+pub fn supplies_k(layout: &Layout, state: &State) -> [f64; LOOP_PLACES] {
+    let mut supplies_k = [0.0; LOOP_PLACES];
+    for (supply_k, circuit) in supplies_k.iter_mut().zip(&layout.loops) {
+        *supply_k = state.temperatures_k[circuit.supply.index()];
+    }
+    supplies_k
 }
 
 /// Running totals.
@@ -44,8 +66,9 @@ pub struct Summary {
     final_soc: f64,
     final_charge_soc: f64,
     highest_pressure_bar: f64,
-    highest_htc_supply_degc: f64,
-    lowest_chiller_supply_degc: f64,
+    /// Highest and lowest supply of each loop.
+    highest_supply_degc: [f64; LOOP_PLACES],
+    lowest_supply_degc: [f64; LOOP_PLACES],
     limit_breaches: f64,
     worst_residual: f64,
     voltage_v_s: f64,
@@ -66,8 +89,8 @@ impl Default for Summary {
             final_soc: f64::NAN,
             final_charge_soc: f64::NAN,
             highest_pressure_bar: 0.0,
-            highest_htc_supply_degc: f64::NEG_INFINITY,
-            lowest_chiller_supply_degc: f64::INFINITY,
+            highest_supply_degc: [f64::NEG_INFINITY; LOOP_PLACES],
+            lowest_supply_degc: [f64::INFINITY; LOOP_PLACES],
             limit_breaches: 0.0,
             worst_residual: 0.0,
             voltage_v_s: 0.0,
@@ -79,23 +102,21 @@ impl Default for Summary {
 }
 
 impl Summary {
-    /// Adds a step that began with these temperatures of HTC and chiller supply [K].
+    /// Adds a step that began with these temperatures of the loops' supplies [K].
     pub fn add(
         &mut self,
         plant: &Plant,
-        supplies_before_k: [f64; 2],
+        supplies_before_k: &[f64; LOOP_PLACES],
         after: &State,
         record: &StepRecord,
         disturbance: &Disturbance,
     ) {
-        let nodes = &plant.assembly.nodes;
-        let degc = |state: &State, node: hp_plant::numerics::thermal_network::Node| {
-            state.temperatures_k[node.index()] - ZERO_CELSIUS_K
-        };
+        let layout = plant.layout();
         self.energies_j.accumulate(&record.flows, CONTROL_PERIOD_S);
         self.duration_s += CONTROL_PERIOD_S;
         self.distance_m += 0.5 * (disturbance.start_speed_m_s + disturbance.end_speed_m_s) * CONTROL_PERIOD_S;
-        let deviation_k = (degc(after, nodes.cabin) - COMFORT_TEMPERATURE_DEGC).abs();
+        let cabin_degc = after.temperatures_k[layout.cabins[0].air.index()] - ZERO_CELSIUS_K;
+        let deviation_k = (cabin_degc - COMFORT_TEMPERATURE_DEGC).abs();
         self.discomfort_k_s += deviation_k * CONTROL_PERIOD_S;
         if deviation_k <= COMFORT_BAND_K {
             self.comfortable_s += CONTROL_PERIOD_S;
@@ -103,8 +124,8 @@ impl Summary {
                 self.first_comfort_s = self.duration_s;
             }
         }
-        self.final_soc =
-            plant.battery.usable_state_of_charge(&after.battery, after.temperatures_k[nodes.battery.index()]);
+        let battery_k = after.temperatures_k[layout.battery.index()];
+        self.final_soc = plant.battery.usable_state_of_charge(&after.battery, battery_k);
         self.final_charge_soc = plant.battery.state_of_charge(&after.battery);
         self.voltage_v_s += record.battery_voltage_v * CONTROL_PERIOD_S;
         self.worst_residual = self.worst_residual.max(record.ledger.relative());
@@ -118,32 +139,34 @@ impl Summary {
     fn check_limits(
         &mut self,
         plant: &Plant,
-        supplies_before_k: [f64; 2],
+        before_k: &[f64; LOOP_PLACES],
         after: &State,
         record: &StepRecord,
     ) {
-        let nodes = &plant.assembly.nodes;
         let vehicle = &plant.vehicle;
-        let htc = (supplies_before_k[0], after.temperatures_k[nodes.htc_supply.index()]);
-        let chiller = (supplies_before_k[1], after.temperatures_k[nodes.chiller_supply.index()]);
-        self.highest_htc_supply_degc = self.highest_htc_supply_degc.max(htc.1 - ZERO_CELSIUS_K);
-        self.lowest_chiller_supply_degc = self.lowest_chiller_supply_degc.min(chiller.1 - ZERO_CELSIUS_K);
-        if !record.refrigeration.running() {
-            return;
+        let running = record.refrigeration.running();
+        let mut breached = false;
+        for (place, circuit) in vehicle.layout.loops.iter().enumerate().take(LOOP_PLACES) {
+            let supply_k = after.temperatures_k[circuit.supply.index()];
+            let supply_degc = supply_k - ZERO_CELSIUS_K;
+            self.highest_supply_degc[place] = self.highest_supply_degc[place].max(supply_degc);
+            self.lowest_supply_degc[place] = self.lowest_supply_degc[place].min(supply_degc);
+            let highest_k = vehicle.loops[place].maximum_supply_degc.map_or(f64::INFINITY, Celsius::kelvin);
+            let lowest_k =
+                vehicle.loops[place].minimum_supply_degc.map_or(f64::NEG_INFINITY, Celsius::kelvin);
+            let too_hot = supply_k > highest_k + TEMPERATURE_TOLERANCE_K && supply_k > before_k[place];
+            let too_cold = supply_k < lowest_k - TEMPERATURE_TOLERANCE_K && supply_k < before_k[place];
+            breached |= circuit.exchanger.is_some() && (too_hot || too_cold);
         }
+        let Some(refrigeration) = vehicle.refrigeration.as_ref().filter(|_| running) else { return };
         let pressure_bar = record.refrigeration.condensing_pressure_pa * 1e-5;
         self.highest_pressure_bar = self.highest_pressure_bar.max(pressure_bar);
-        let too_high = pressure_bar > vehicle.refrigeration.maximum_pressure_bar + PRESSURE_TOLERANCE_BAR;
-        let too_hot =
-            htc.1 > vehicle.htc.maximum_supply_degc.kelvin() + TEMPERATURE_TOLERANCE_K && htc.1 > htc.0;
-        let too_cold = chiller.1 < vehicle.chiller.minimum_supply_degc.kelvin() - TEMPERATURE_TOLERANCE_K
-            && chiller.1 < chiller.0;
-        let compressor = &vehicle.refrigeration.compressor;
+        breached |= pressure_bar > refrigeration.maximum_pressure_bar + PRESSURE_TOLERANCE_BAR;
+        let compressor = &refrigeration.compressor;
         let gas_k = record.refrigeration.discharge_temperature_k;
-        let gas_too_hot =
-            gas_k > compressor.maximum_discharge_temperature_degc + ZERO_CELSIUS_K + TEMPERATURE_TOLERANCE_K;
-        let too_fast = record.refrigeration.speed_rev_s > compressor.maximum_speed_rev_s * 1.001;
-        let breached = too_high || too_hot || too_cold || gas_too_hot || too_fast;
+        let hottest_gas_k = compressor.maximum_discharge_temperature_degc + ZERO_CELSIUS_K;
+        breached |= gas_k > hottest_gas_k + TEMPERATURE_TOLERANCE_K;
+        breached |= record.refrigeration.speed_rev_s > compressor.maximum_speed_rev_s * 1.001;
         self.limit_breaches += f64::from(u8::from(breached));
     }
 
@@ -161,12 +184,16 @@ impl Summary {
 
     /// All totals by name; energies in kWh.
     #[must_use]
-    pub fn values(&self) -> Vec<(String, f64)> {
+    pub fn values(&self, layout: &Layout) -> Vec<(String, f64)> {
         let kwh = |flow: Flow| self.energies_j[flow] / JOULE_PER_KWH;
         let distance_km = self.distance_m / 1000.0;
-        let mut values: Vec<(String, f64)> = [
-            ("energy_kwh", kwh(Flow::Battery)),
-            ("energy_kwh_per_100_km", 100.0 * kwh(Flow::Battery) / distance_km),
+        let mut values: Vec<(String, f64)> = Vec::new();
+        let mut add = |rows: &[(&str, f64)]| {
+            values.extend(rows.iter().map(|&(name, value)| (name.to_owned(), value)));
+        };
+        add(&[
+            ("energy_kwh", kwh(Flow::BATTERY)),
+            ("energy_kwh_per_100_km", 100.0 * kwh(Flow::BATTERY) / distance_km),
             ("final_soc_pct", 100.0 * self.final_soc),
             ("final_charge_soc_pct", 100.0 * self.final_charge_soc),
             ("duration_s", self.duration_s),
@@ -175,26 +202,22 @@ impl Summary {
             ("time_to_comfort_s", self.first_comfort_s),
             ("comfortable_share", self.comfortable_s / self.duration_s),
             ("mean_voltage_v", self.voltage_v_s / self.duration_s),
-            ("heat_pump_cop", self.energies_j[Flow::Condenser] / self.energies_j[Flow::Compressor]),
+            ("heat_pump_cop", self.energies_j[Flow::CONDENSER] / self.energies_j[Flow::COMPRESSOR]),
             ("compressor_starts", self.compressor_starts),
             ("protection_trips", self.protection_trips),
             ("loads_shed_s", self.shed_s),
             ("highest_pressure_bar", self.highest_pressure_bar),
-            ("highest_htc_supply_degc", self.highest_htc_supply_degc),
-            ("lowest_chiller_supply_degc", self.lowest_chiller_supply_degc),
-            ("limit_breaches", self.limit_breaches),
-            ("worst_relative_residual", self.worst_residual),
-        ]
-        .into_iter()
-        .map(|(name, value)| (name.to_owned(), value))
-        .collect();
-        for &flow in &Flow::ALL[..FLOW_COUNT] {
-            let stem = flow
-                .column()
-                .trim_end_matches("_w")
-                .trim_end_matches("_power")
-                .trim_end_matches("_heat_flow");
-            values.push((format!("{stem}_energy_kwh"), kwh(flow)));
+        ]);
+        for (place, circuit) in layout.loops.iter().enumerate() {
+            let (ends, value) = match circuit.side {
+                Side::Hot => ("highest", self.highest_supply_degc[place]),
+                Side::Cold => ("lowest", self.lowest_supply_degc[place]),
+            };
+            add(&[(&format!("{ends}_{}_supply_degc", circuit.name), value)]);
+        }
+        add(&[("limit_breaches", self.limit_breaches), ("worst_relative_residual", self.worst_residual)]);
+        for row in &layout.flows {
+            add(&[(&row.energy_column(), kwh(row.flow))]);
         }
         values
     }

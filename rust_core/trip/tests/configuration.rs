@@ -107,7 +107,7 @@ fn another_rule_set_drives_by_its_file_s_name_and_warms_the_cabin() {
         assert_eq!(matches!(*experiment.rules, Rules::Thermostat(_)), controller == "thermostat");
         let (summary, end) = experiment.totals();
         assert_eq!(end, EndReason::Arrived);
-        let values: BTreeMap<String, f64> = summary.values().into_iter().collect();
+        let values: BTreeMap<String, f64> = summary.values(experiment.plant.layout()).into_iter().collect();
         assert!(values["worst_relative_residual"] < 1e-9 && values["limit_breaches"] == 0.0);
         values["discomfort_k"]
     };

@@ -1,7 +1,7 @@
-//! How components connect: coolant branches, thermal network, refrigerant loop.
+//! How components connect: coolant branches, refrigerant loop and its exchangers.
 
-pub mod assembly;
 pub mod branches;
+pub mod exchangers;
 pub mod refrigeration_cycle;
 pub mod refrigeration_loop;
 mod refrigeration_solver;

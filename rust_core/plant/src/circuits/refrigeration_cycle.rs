@@ -1,7 +1,7 @@
 //! Equations of the quasi-steady vapour-compression cycle, for given saturation temperatures and speed.
 
+use super::refrigeration_loop::LoopBoundary;
 use crate::components::compressor::{CompressorParameters, soft_floor};
-use crate::components::heat_exchanger::inlet_conductance_w_k;
 use crate::components::refrigerant_exchanger::approach_limited_k;
 use crate::config::{Celsius, Violation};
 use crate::media::refrigerant::{CondensingIsobar, RefrigerantTable};
@@ -16,10 +16,6 @@ const PASCAL_PER_BAR: f64 = 1e5;
 parameters! {
     /// Refrigerant loop: compressor, condenser, expansion, evaporator.
     pub struct RefrigerationParameters {
-        /// Condenser conductance, refrigerant to HTC coolant [W/K].
-        condenser_ua_w_k: f64 = 50.0 .. 10000.0,
-        /// Evaporator (chiller) conductance, coolant to refrigerant [W/K].
-        evaporator_ua_w_k: f64 = 50.0 .. 10000.0,
         /// Superheat that the expansion valve holds where the coolant allows it [K].
         superheat_k: f64 = 0.5 .. 10.0,
         /// Subcooling at the condenser outlet where the coolant allows it [K].
@@ -55,6 +51,9 @@ pub struct RefrigerationCycle {
 pub(super) struct CoolantSides {
     pub hot_inlet_k: f64,
     pub cold_inlet_k: f64,
+    /// Inlets that leave subcooling and superheat the least room.
+    hottest_inlet_k: f64,
+    coldest_inlet_k: f64,
     /// Duty per distance between coolant inlet and saturation [W/K].
     pub hot_conductance_w_k: f64,
     pub cold_conductance_w_k: f64,
@@ -139,16 +138,17 @@ impl RefrigerationCycle {
         &self.table
     }
 
-    pub(super) fn coolant_sides(&self, hot: (f64, f64), cold: (f64, f64)) -> CoolantSides {
-        let hot_conductance_w_k = inlet_conductance_w_k(hot.1, self.parameters.condenser_ua_w_k);
-        let cold_conductance_w_k = inlet_conductance_w_k(cold.1, self.parameters.evaporator_ua_w_k);
+    #[inline]
+    pub(super) fn coolant_sides(boundary: &LoopBoundary) -> CoolantSides {
         CoolantSides {
-            hot_inlet_k: hot.0,
-            cold_inlet_k: cold.0,
-            hot_conductance_w_k,
-            cold_conductance_w_k,
-            hot_resistance_k_w: hot_conductance_w_k.recip(),
-            cold_resistance_k_w: cold_conductance_w_k.recip(),
+            hot_inlet_k: boundary.hot_return_k,
+            cold_inlet_k: boundary.cold_return_k,
+            hottest_inlet_k: boundary.hottest_inlet_k,
+            coldest_inlet_k: boundary.coldest_inlet_k,
+            hot_conductance_w_k: boundary.hot_conductance_w_k,
+            cold_conductance_w_k: boundary.cold_conductance_w_k,
+            hot_resistance_k_w: boundary.hot_conductance_w_k.recip(),
+            cold_resistance_k_w: boundary.cold_conductance_w_k.recip(),
         }
     }
 
@@ -160,8 +160,8 @@ impl RefrigerationCycle {
         let [evaporating_k, condensing_k, speed_rev_s] = unknowns;
         let parameters = &self.parameters;
         let (evaporating, condensing) = (evaporating_k.alone(), condensing_k.alone());
-        let superheat_k = approach_limited_k(parameters.superheat_k, -(evaporating - sides.cold_inlet_k));
-        let subcooling_k = approach_limited_k(parameters.subcooling_k, condensing - sides.hot_inlet_k);
+        let superheat_k = approach_limited_k(parameters.superheat_k, -(evaporating - sides.coldest_inlet_k));
+        let subcooling_k = approach_limited_k(parameters.subcooling_k, condensing - sides.hottest_inlet_k);
         let suction = self.table.suction_state(evaporating, superheat_k).of(evaporating_k);
         let isobar = self.table.condensing_isobar(condensing);
         let liquid_enthalpy_j_kg = condensing_k.then(isobar.liquid_enthalpy_j_kg(subcooling_k));

@@ -28,17 +28,25 @@ const SMALLEST_JUMP: f64 = 0.03;
 const SPEED_BY_POWER: f64 = 0.9;
 const DIFFERENCE_BY_SPEED: f64 = 0.86;
 
-/// What the coolants offer during a step.
+/// What the coolants, or the air, offer during a step: all condensers as one, all evaporators as one.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct LoopBoundary {
     /// Coolant entering the condenser [K].
     pub hot_return_k: f64,
     /// Coolant entering the evaporator [K].
     pub cold_return_k: f64,
+    /// The hottest of the inlets where there are several condensers [K].
+    pub hottest_inlet_k: f64,
+    /// The coldest of the inlets where there are several evaporators [K].
+    pub coldest_inlet_k: f64,
     /// Capacity rate of the hot coolant [W/K].
     pub hot_capacity_rate_w_k: f64,
     /// Capacity rate of the cold coolant [W/K].
     pub cold_capacity_rate_w_k: f64,
+    /// Duty per distance between hot coolant inlet and condensing temperature [W/K].
+    pub hot_conductance_w_k: f64,
+    /// Duty per distance between cold coolant inlet and evaporating temperature [W/K].
+    pub cold_conductance_w_k: f64,
     /// Hot supply: `base + sensitivity * condenser heat flow` must stay at or below its limit.
     pub hot_supply: SupplyLimit,
     /// Cold supply: `base - sensitivity * evaporator heat flow` must stay at or above its limit.
@@ -278,10 +286,7 @@ impl RefrigerationCycle {
         {
             return self.at_rest(boundary, LoopStatus::Off, Limit::Power);
         }
-        let sides = self.coolant_sides(
-            (boundary.hot_return_k, boundary.hot_capacity_rate_w_k),
-            (boundary.cold_return_k, boundary.cold_capacity_rate_w_k),
-        );
+        let sides = Self::coolant_sides(boundary);
         let flowing = sides.hot_conductance_w_k.min(sides.cold_conductance_w_k) >= LEAST_CONDUCTANCE_W_K;
         let finite = (boundary.hot_return_k + boundary.cold_return_k + power_limit_w).is_finite();
         if !(flowing && finite) {
@@ -320,10 +325,7 @@ impl RefrigerationCycle {
     /// inlet, dew point, bubble point, liquid outlet; evaporator gas outlet, dew point, inlet. None is negative.
     #[must_use]
     pub fn stream_margins_k(&self, boundary: &LoopBoundary, result: &LoopResult) -> [f64; 7] {
-        let sides = self.coolant_sides(
-            (boundary.hot_return_k, boundary.hot_capacity_rate_w_k),
-            (boundary.cold_return_k, boundary.cold_capacity_rate_w_k),
-        );
+        let sides = Self::coolant_sides(boundary);
         let unknowns =
             [result.evaporating_temperature_k, result.condensing_temperature_k, result.speed_rev_s];
         let point = self.point(&sides, unknowns);

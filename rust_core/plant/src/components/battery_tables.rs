@@ -4,7 +4,7 @@ use crate::config::{Validate, Violation, check_range};
 use serde::{Deserialize, Serialize};
 
 /// OCV(SOC) of one cell.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 pub struct OpenCircuitVoltageTable {
     /// State of charge, rising from 0 to 1.
@@ -14,7 +14,7 @@ pub struct OpenCircuitVoltageTable {
 }
 
 /// R0, R1 and C1 of one cell, one row a temperature, one column a state of charge.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 pub struct CircuitTable {
     /// Temperatures of the rows, rising [degC].
@@ -30,7 +30,7 @@ pub struct CircuitTable {
 }
 
 /// C_eff(T).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 pub struct UsableCapacityTable {
     /// Temperatures, rising [degC].

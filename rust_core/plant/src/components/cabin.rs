@@ -47,7 +47,7 @@ parameters! {
 }
 
 /// Air flows of a moment.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ventilation {
     /// Capacity rate of all blown air [W/K].
     pub supply_rate_w_k: f64,
@@ -104,8 +104,6 @@ impl CabinParameters {
 
 #[cfg(test)]
 mod tests {
-    use crate::config::kinds::VEHICLE;
-    use crate::config::library;
     use crate::config::vehicle::VehicleParameters;
     use proptest::prelude::*;
 
@@ -114,13 +112,14 @@ mod tests {
         fn every_occupant_has_fresh_air_whatever_is_asked(
             level in 0.0..=1.0_f64, recirculation in 0.0..=1.0_f64, occupants in 0_u32..6,
         ) {
-            let vehicle: VehicleParameters = library::load(VEHICLE, "jeffs2019", &[]).expect("built in");
+            let vehicle = VehicleParameters::load("jeffs2019", &[]).expect("built in");
+            let cabin = vehicle.cabin();
             let occupants = f64::from(occupants);
-            let air = vehicle.cabin.ventilation(level, recirculation, occupants);
-            let needed = vehicle.cabin.minimum_fresh_air_per_occupant_kg_s * occupants.max(1.0)
+            let air = cabin.ventilation(level, recirculation, occupants);
+            let needed = cabin.minimum_fresh_air_per_occupant_kg_s * occupants.max(1.0)
                 * crate::media::air::SPECIFIC_HEAT_J_KG_K;
             prop_assert!(air.fresh_rate_w_k >= needed.min(air.supply_rate_w_k) * (1.0 - 1e-12));
-            prop_assert!(air.recirculation <= vehicle.cabin.maximum_recirculation);
+            prop_assert!(air.recirculation <= cabin.maximum_recirculation);
         }
     }
 }

@@ -4,10 +4,11 @@ use super::pump::PumpParameters;
 use crate::config::{Celsius, Validate, Violation, check_range};
 use crate::parameters;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 parameters! {
-    /// Coolant, wetted metal, pump, valves and limits of one loop.
-    pub struct LoopParameters {
+    /// Coolant, wetted metal, pump and valves of one loop.
+    pub struct CircuitParameters {
         /// Heat capacity of coolant and wetted metal [J/K].
         heat_capacity_j_k: f64 = 1000.0 .. 1000000.0,
         /// Specific heat of the coolant [J/(kg K)].
@@ -26,32 +27,35 @@ parameters! {
     }
 }
 
-parameters! {
-    /// High temperature circuit: supply limit and its own members.
-    pub struct HtcParameters {
-        /// Supply temperature that the heat pump must not exceed (paper: 90 degC) [degC].
-        maximum_supply_degc: Celsius = 30.0 .. 130.0,
-        ;
-        /// Loop.
-        circuit: LoopParameters,
-    }
+/// A loop's section of a vehicle: supply limits that the heat pump keeps, and the circuit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LoopParameters {
+    /// Supply temperature that a condenser must not exceed (paper: 90 degC) [degC].
+    pub maximum_supply_degc: Option<Celsius>,
+    /// Supply temperature that an evaporator must not undercut (paper: -10 degC) [degC].
+    pub minimum_supply_degc: Option<Celsius>,
+    /// Coolant, pump, valves.
+    pub circuit: CircuitParameters,
 }
 
-parameters! {
-    /// Chiller circuit: supply limit and its own members.
-    pub struct ChillerParameters {
-        /// Supply temperature that the heat pump must not undercut (paper: -10 degC) [degC].
-        minimum_supply_degc: Celsius = -40.0 .. 20.0,
-        ;
-        /// Loop.
-        circuit: LoopParameters,
+impl Validate for LoopParameters {
+    fn validate(&self) -> Result<(), Violation> {
+        if let Some(highest) = self.maximum_supply_degc {
+            check_range("maximum_supply_degc", highest, 30.0, 130.0)?;
+        }
+        if let Some(lowest) = self.minimum_supply_degc {
+            check_range("minimum_supply_degc", lowest, -40.0, 20.0)?;
+        }
+        self.circuit.validate().map_err(|violation| violation.within("circuit"))
     }
 }
 
 /// What becomes of the flow of closed branches.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Default)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClosedBranches {
+    #[default]
     /// It bypasses the component; each branch keeps its share (the paper's Figures 8 and 9).
     Bypass,
     /// It goes to the open branches.
@@ -61,50 +65,31 @@ pub enum ClosedBranches {
 }
 
 /// How the loop flow divides over the parallel branches.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
 pub struct BranchShares {
     /// What becomes of the flow of closed branches.
     pub closed_branches: ClosedBranches,
-    /// Cabin core.
-    pub cabin: f64,
-    /// Battery plate.
-    pub battery: f64,
-    /// Ambient exchanger.
-    pub ambient: f64,
-    /// Motor and inverter (chiller loop).
-    #[serde(default)]
-    pub motor: f64,
-    /// Transmission (chiller loop).
-    #[serde(default)]
-    pub transmission: f64,
-    /// Thermal battery (chiller loop; it is in series in the HTC).
-    #[serde(default)]
-    pub thermal_battery: f64,
+    /// Share of each member's parallel branch; members in series see the whole flow.
+    #[serde(flatten)]
+    pub shares: BTreeMap<String, f64>,
 }
 
 impl BranchShares {
-    /// Sum of the shares.
+    /// Share of a member's branch.
     #[must_use]
-    pub fn sum(&self) -> f64 {
-        self.cabin + self.battery + self.ambient + self.motor + self.transmission + self.thermal_battery
+    pub fn of(&self, member: &str) -> f64 {
+        self.shares.get(member).copied().unwrap_or(0.0)
     }
 }
 
 impl Validate for BranchShares {
     fn validate(&self) -> Result<(), Violation> {
-        for (key, value) in [
-            ("cabin", self.cabin),
-            ("battery", self.battery),
-            ("ambient", self.ambient),
-            ("motor", self.motor),
-            ("transmission", self.transmission),
-            ("thermal_battery", self.thermal_battery),
-        ] {
+        for (key, &value) in &self.shares {
             check_range(key, value, 0.0, 1.0)?;
         }
-        if (self.sum() - 1.0).abs() > 1e-9 {
-            return Err(Violation::new("", format!("{} in sum", self.sum()), "the shares must add up to 1"));
+        let sum: f64 = self.shares.values().sum();
+        if !self.shares.is_empty() && (sum - 1.0).abs() > 1e-9 {
+            return Err(Violation::new("", format!("{sum} in sum"), "the shares must add up to 1"));
         }
         Ok(())
     }

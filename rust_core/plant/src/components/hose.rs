@@ -1,8 +1,8 @@
 //! Hoses and pipes of a coolant loop, which lose heat to ambient.
 
-use super::coolant_loop::LoopParameters;
+use super::coolant_loop::CircuitParameters;
 
-impl LoopParameters {
+impl CircuitParameters {
     /// Conductance to ambient of the hoses at one end of the loop, supply or return: half of them each [W/K].
     #[must_use]
     #[inline]

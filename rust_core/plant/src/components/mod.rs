@@ -1,5 +1,6 @@
 //! Physical components, one a file: parameters, state and equations.
 
+pub mod air_stream;
 pub mod ambient_exchanger;
 pub mod battery;
 pub mod battery_tables;
@@ -9,14 +10,15 @@ pub mod compressor;
 pub mod coolant_loop;
 pub mod exhaust_recovery;
 pub mod heat_exchanger;
+pub mod heater;
 mod hose;
+pub mod liquid_plate;
 pub mod motor;
 pub mod pid;
 pub mod powertrain;
-pub mod ptc;
 pub mod pump;
 pub mod refrigerant_exchanger;
-pub mod thermal_battery;
+pub mod store;
 pub mod thermal_switch;
 pub mod transmission;
 pub mod underbody_plate;

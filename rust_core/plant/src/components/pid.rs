@@ -27,7 +27,7 @@ pub struct ResetPid {
 }
 
 /// Gains of a [`ResetPid`] at one period.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ResetGains {
     proportional: f64,
     /// Derivative gain over the period.
@@ -100,16 +100,25 @@ impl IncrementalPid {
     #[inline]
     pub fn updated(self, gains: &PidParameters, error: f64, period_s: f64, low: f64, high: f64) -> Self {
         let change = if self.started { error - self.last_error } else { 0.0 };
-        let bend = change - self.last_change;
+        let before = (self.output, self.last_change);
+        let (output, change) = Self::moved(gains, before, (error, change), period_s, (low, high));
+        Self { output, last_error: error, last_change: change, started: true }
+    }
+
+    /// Output, limited to a range, and change of the error, from those before, the error and its change.
+    #[inline(always)]
+    pub(crate) fn moved(
+        gains: &PidParameters,
+        (output, last_change): (f64, f64),
+        (error, change): (f64, f64),
+        period_s: f64,
+        (low, high): (f64, f64),
+    ) -> (f64, f64) {
+        let bend = change - last_change;
         let step = gains.proportional * change
             + gains.integral * error * period_s
             + gains.derivative * bend / period_s;
-        Self {
-            output: (self.output + step).clamp(low, high),
-            last_error: error,
-            last_change: change,
-            started: true,
-        }
+        ((output + step).clamp(low, high), change)
     }
 }
 

@@ -23,7 +23,7 @@ parameters! {
 }
 
 /// Flow and controller memory of a pump.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct PumpState {
     /// Coolant flow [kg/s].
     pub flow_kg_s: f64,

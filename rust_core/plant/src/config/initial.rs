@@ -1,36 +1,102 @@
 //! State of a vehicle at the start.
 
 use super::{Celsius, Validate, Violation, check_range};
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
+use std::collections::BTreeMap;
+
+/// What a key that gives a member's temperature ends with.
+const TEMPERATURE_ENDING: &str = "_temperature_degc";
 
 /// State at the start; what is not given has the soak temperature.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+///
+/// In a file each member's temperature has a key of its own: `battery_temperature_degc`; that of a cabin counts for its air
+/// and furnishings.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InitialParameters {
     /// Temperature of everything after the soak [degC].
     pub soak_temperature_degc: Celsius,
     /// State of charge [%].
     pub state_of_charge_pct: f64,
-    /// Cabin air and furnishings [degC].
-    pub cabin_temperature_degc: Option<Celsius>,
-    /// Battery [degC].
-    pub battery_temperature_degc: Option<Celsius>,
-    /// Thermal battery [degC].
-    pub thermal_battery_temperature_degc: Option<Celsius>,
+    /// Temperatures of members by name [degC].
+    members: BTreeMap<String, Celsius>,
+}
+
+impl InitialParameters {
+    /// Everything at the soak temperature.
+    #[must_use]
+    pub fn soaked(soak_temperature_degc: Celsius, state_of_charge_pct: f64) -> Self {
+        Self { soak_temperature_degc, state_of_charge_pct, members: BTreeMap::new() }
+    }
+
+    /// Temperature of a member, where it is not the soak temperature.
+    #[must_use]
+    pub fn of(&self, member: &str) -> Option<Celsius> {
+        self.members.get(member).copied()
+    }
+
+    /// Gives a member a temperature of its own, or the soak temperature.
+    pub fn set(&mut self, member: &str, temperature: Option<Celsius>) {
+        match temperature {
+            Some(value) => self.members.insert(member.to_owned(), value),
+            None => self.members.remove(member),
+        };
+    }
+
+    /// Members with a temperature of their own.
+    pub fn members(&self) -> impl Iterator<Item = &str> {
+        self.members.keys().map(String::as_str)
+    }
+}
+
+/// As bytes of a snapshot hold it.
+#[derive(Deserialize)]
+struct Plain {
+    soak_temperature_degc: Celsius,
+    state_of_charge_pct: f64,
+    members: BTreeMap<String, Celsius>,
+}
+
+/// As a file gives it.
+#[derive(Deserialize)]
+struct InFile {
+    soak_temperature_degc: Celsius,
+    state_of_charge_pct: f64,
+    #[serde(flatten)]
+    others: BTreeMap<String, Celsius>,
+}
+
+impl<'de> Deserialize<'de> for InitialParameters {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        if !deserializer.is_human_readable() {
+            let Plain { soak_temperature_degc, state_of_charge_pct, members } =
+                Plain::deserialize(deserializer)?;
+            return Ok(Self { soak_temperature_degc, state_of_charge_pct, members });
+        }
+        let file = InFile::deserialize(deserializer)?;
+        let mut members = BTreeMap::new();
+        for (key, value) in file.others {
+            let member = key.strip_suffix(TEMPERATURE_ENDING).ok_or_else(|| {
+                let known =
+                    format!("soak_temperature_degc, state_of_charge_pct and <member>{TEMPERATURE_ENDING}");
+                D::Error::custom(format!("unknown field `{key}`, expected one of {known}"))
+            })?;
+            members.insert(member.to_owned(), value);
+        }
+        Ok(Self {
+            soak_temperature_degc: file.soak_temperature_degc,
+            state_of_charge_pct: file.state_of_charge_pct,
+            members,
+        })
+    }
 }
 
 impl Validate for InitialParameters {
     fn validate(&self) -> Result<(), Violation> {
         check_range("soak_temperature_degc", self.soak_temperature_degc, -50.0, 70.0)?;
         check_range("state_of_charge_pct", self.state_of_charge_pct, 0.0, 100.0)?;
-        for (key, value) in [
-            ("cabin_temperature_degc", self.cabin_temperature_degc),
-            ("battery_temperature_degc", self.battery_temperature_degc),
-            ("thermal_battery_temperature_degc", self.thermal_battery_temperature_degc),
-        ] {
-            if let Some(value) = value {
-                check_range(key, value, -50.0, 100.0)?;
-            }
+        for (member, &value) in &self.members {
+            check_range(&format!("{member}{TEMPERATURE_ENDING}"), value, -50.0, 100.0)?;
         }
         Ok(())
     }

@@ -11,8 +11,15 @@ pub const VEHICLE: Kind = Kind {
     word: "vehicle",
     ending: "toml",
     files: embedded::VEHICLES,
-    references: &[Reference { path: &["refrigerant"], kind: &REFRIGERANT }],
+    references: &[
+        Reference { path: &["architecture"], kind: &ARCHITECTURE },
+        Reference { path: &["refrigerant"], kind: &REFRIGERANT },
+    ],
 };
+
+/// A thermal architecture: `architectures/*.toml`.
+pub const ARCHITECTURE: Kind =
+    Kind { word: "architecture", ending: "toml", files: embedded::ARCHITECTURES, references: &[] };
 
 /// Properties of a refrigerant: `refrigerants/*.csv`.
 pub const REFRIGERANT: Kind =

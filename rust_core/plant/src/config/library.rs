@@ -144,15 +144,73 @@ pub fn table(kind: Kind, name: &str, overrides: &[Override]) -> PlantResult<Tabl
 /// # Errors
 /// A key is missing or unknown, or a value is not allowed.
 pub fn read<T: DeserializeOwned + Validate>(name: &str, table: Table) -> PlantResult<T> {
-    let parameters: T = serde_path_to_error::deserialize(Value::Table(table)).map_err(|error| {
-        let path = error.path().to_string();
-        let inner = error.into_inner().to_string();
-        let message =
-            if path == "." { inner.trim().to_owned() } else { format!("`{path}`: {}", inner.trim()) };
-        PlantError::Syntax { file: name.to_owned(), message }
-    })?;
+    let parameters: T = deserialized(name, "", Value::Table(table))?;
     parameters.validate().map_err(|violation| violation.in_file(name))?;
     Ok(parameters)
+}
+
+/// Takes a section out of a file's table, reads and checks it.
+///
+/// # Errors
+/// It is not there, one of its keys is missing or unknown, or a value is not allowed.
+pub fn read_section<T: DeserializeOwned + Validate>(
+    name: &str,
+    table: &mut Table,
+    section: &str,
+) -> PlantResult<T> {
+    let value = take(name, table, section)?;
+    let parameters: T = deserialized(name, section, value)?;
+    parameters.validate().map_err(|violation| violation.within(section).in_file(name))?;
+    Ok(parameters)
+}
+
+/// Takes a value out of a file's table.
+///
+/// # Errors
+/// It is not there.
+pub fn take(name: &str, table: &mut Table, key: &str) -> PlantResult<Value> {
+    table
+        .remove(key)
+        .ok_or_else(|| PlantError::Syntax { file: name.to_owned(), message: format!("`{key}` is missing") })
+}
+
+/// A value as a type, its checks still to come; `section` is where it stands.
+///
+/// # Errors
+/// A key is missing or unknown, or a value is of the wrong type.
+pub fn deserialized<T: DeserializeOwned>(name: &str, section: &str, value: Value) -> PlantResult<T> {
+    serde_path_to_error::deserialize(value).map_err(|error| {
+        let path = error.path().to_string();
+        let inner = error.into_inner().message().to_owned();
+        let place = match (section, path.as_str()) {
+            ("", ".") => String::new(),
+            ("", path) => format!("`{path}`: "),
+            (section, ".") => format!("`{section}`: "),
+            (section, path) => format!("`{section}.{path}`: "),
+        };
+        PlantError::Syntax { file: name.to_owned(), message: format!("{place}{}", inner.trim()) }
+    })
+}
+
+/// What a file itself gives, that of its base left out, with the overrides.
+///
+/// # Errors
+/// There is no such file, or it is not TOML.
+pub fn own_table(kind: Kind, name: &str, overrides: &[Override]) -> PlantResult<Table> {
+    let syntax =
+        |error: toml::de::Error| PlantError::Syntax { file: name.to_owned(), message: error.to_string() };
+    let mut table: Table = toml::from_str(&text(kind, name)?).map_err(syntax)?;
+    for change in overrides {
+        let mut value = change.value.clone();
+        for part in change.key.rsplit('.') {
+            let key = part.split('[').next().unwrap_or_default().to_owned();
+            value = Value::Table(Table::from_iter([(key, value)]));
+        }
+        if let Value::Table(change) = value {
+            merge(&mut table, change);
+        }
+    }
+    Ok(table)
 }
 
 fn merged(kind: Kind, name: &str, depth: usize) -> PlantResult<Table> {

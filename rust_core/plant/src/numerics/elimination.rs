@@ -4,7 +4,10 @@
 //! is left of the bookkeeping: each operation is one multiplication and subtraction at a fixed place.
 
 use super::elementary::fused;
-use super::topology::{LinkPorts, MAXIMUM_NODES, Node};
+use super::graph::{LinkPorts, Node};
+
+/// Largest number of nodes.
+pub const MAXIMUM_NODES: usize = 22;
 
 /// Largest number of matrix entries that are not always zero.
 pub(super) const MAXIMUM_ENTRIES: usize = 64;

@@ -177,7 +177,7 @@ impl<const N: usize> BilinearTable<N> {
 
     /// All functions at one point.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, row: f64, column: f64) -> [f64; N] {
         let (i, u) = self.rows.locate(row);
         let (j, v) = self.columns.locate(column);

@@ -6,14 +6,14 @@
 //! exchange the heat: a coolant branch is driven by the supply temperature and takes its heat from the return node.
 
 use super::elementary::fused;
+pub use super::elimination::MAXIMUM_NODES;
 use super::elimination::{Elimination, MAXIMUM_ENTRIES};
+pub use super::graph::{LinkPorts, Node};
 use crate::unrolled;
 use std::marker::PhantomData;
 
-pub use super::topology::{LinkPorts, MAXIMUM_NODES, Node, Topology};
-
 /// Largest number of links.
-pub const MAXIMUM_LINKS: usize = 40;
+pub const MAXIMUM_LINKS: usize = 56;
 
 /// What a link does during one step: heat flow = `conductance (hot_weight T_hot - cold_weight T_cold + offset)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,65 +57,61 @@ impl LinkState {
 /// One value for each node.
 pub type NodeValues = [f64; MAXIMUM_NODES];
 
-/// Heat capacities of a topology's nodes.
-#[derive(Debug)]
-pub struct ThermalNetwork<T> {
-    capacities_j_k: NodeValues,
-    topology: PhantomData<T>,
+/// Which nodes there are and what connects them.
+pub trait Topology {
+    /// Number of nodes.
+    const NODES: usize;
+    /// Links; states of a step come in the same order.
+    const LINKS: &'static [LinkPorts];
+    /// Nodes whose temperatures are wanted most often: they are eliminated last, so known first.
+    const KNOWN_FIRST: &'static [Node];
 }
 
-impl<T> Clone for ThermalNetwork<T> {
-    fn clone(&self) -> Self {
-        Self { capacities_j_k: self.capacities_j_k, topology: PhantomData }
+/// Heat gained by nodes between two sets of temperatures [J]; differences first, so nothing is lost to round-off.
+#[must_use]
+#[inline(always)]
+pub fn heat_gained_j(
+    nodes: usize,
+    capacities_j_k: &NodeValues,
+    before_k: &NodeValues,
+    after_k: &NodeValues,
+) -> f64 {
+    let mut gained_j = 0.0;
+    for i in 0..nodes.min(MAXIMUM_NODES) {
+        gained_j += capacities_j_k[i] * (after_k[i] - before_k[i]);
     }
+    gained_j
 }
+
+/// A factorised backward-Euler step: of use to the network that made it only.
+#[derive(Debug, Clone)]
+pub struct Factors {
+    entries: [f64; MAXIMUM_ENTRIES],
+    constant_w: NodeValues,
+    capacity_rates_w_k: NodeValues,
+}
+
+/// A network whose topology is known while compiling.
+#[derive(Debug)]
+pub struct ThermalNetwork<T>(PhantomData<T>);
 
 impl<T: Topology> ThermalNetwork<T> {
     const ELIMINATION: Elimination = Elimination::of(T::NODES, T::LINKS, T::KNOWN_FIRST);
 
-    /// A network from the heat capacities of its nodes [J/K]; those beyond the topology's nodes count nothing.
+    /// Assembles and factorises the backward-Euler system of a step, from the heat capacities of the nodes [J/K] and the
+    /// states of the links.
     #[must_use]
-    pub fn new(capacities_j_k: NodeValues) -> Self {
-        Self { capacities_j_k, topology: PhantomData }
-    }
-
-    /// Number of nodes.
-    #[must_use]
-    pub fn nodes(&self) -> usize {
-        T::NODES
-    }
-
-    /// Heat capacity of a node [J/K].
-    #[must_use]
-    pub fn heat_capacity_j_k(&self, node: Node) -> f64 {
-        self.capacities_j_k[node.index()]
-    }
-
-    /// Heat stored above 0 K [J].
-    #[must_use]
-    pub fn stored_heat_j(&self, temperatures_k: &NodeValues) -> f64 {
-        (0..T::NODES).map(|i| self.capacities_j_k[i] * temperatures_k[i]).sum()
-    }
-
-    /// Heat gained between two sets of temperatures [J]; differences first, so nothing is lost to round-off.
-    #[must_use]
-    pub fn heat_gained_j(&self, before_k: &NodeValues, after_k: &NodeValues) -> f64 {
-        (0..T::NODES).map(|i| self.capacities_j_k[i] * (after_k[i] - before_k[i])).sum()
-    }
-
-    /// Assembles and factorises the backward-Euler system of a step.
-    #[must_use]
-    #[inline]
-    pub fn factorise(&self, links: &[LinkState], step_s: f64) -> FactorisedStep<T> {
-        let mut step = FactorisedStep {
+    #[allow(clippy::needless_range_loop, reason = "several arrays, side by side")]
+    #[inline(always)]
+    pub fn factorise(capacities_j_k: &NodeValues, links: &[LinkState], step_s: f64) -> Factors {
+        let mut step = Factors {
             entries: [0.0; MAXIMUM_ENTRIES],
             constant_w: [0.0; MAXIMUM_NODES],
             capacity_rates_w_k: [0.0; MAXIMUM_NODES],
-            topology: PhantomData,
         };
         let per_second = step_s.recip();
         for i in 0..T::NODES {
-            step.capacity_rates_w_k[i] = self.capacities_j_k[i] * per_second;
+            step.capacity_rates_w_k[i] = capacities_j_k[i] * per_second;
             step.entries[Self::ELIMINATION.entry(i, i)] = step.capacity_rates_w_k[i];
         }
         unrolled!(assemble(links, &mut step));
@@ -125,7 +121,7 @@ impl<T: Topology> ThermalNetwork<T> {
 
     /// Enters link number `LINK`.
     #[inline(always)]
-    fn assemble<const LINK: usize>(links: &[LinkState], step: &mut FactorisedStep<T>) {
+    fn assemble<const LINK: usize>(links: &[LinkState], step: &mut Factors) {
         if LINK >= T::LINKS.len() {
             return;
         }
@@ -161,8 +157,8 @@ impl<T: Topology> ThermalNetwork<T> {
 
     /// Heat flow of each link at given temperatures [W].
     #[must_use]
-    #[inline]
-    pub fn link_flows(&self, links: &[LinkState], temperatures_k: &NodeValues) -> [f64; MAXIMUM_LINKS] {
+    #[inline(always)]
+    pub fn link_flows(links: &[LinkState], temperatures_k: &NodeValues) -> [f64; MAXIMUM_LINKS] {
         let mut flows_w = [0.0; MAXIMUM_LINKS];
         unrolled!(link_flow(links, temperatures_k, &mut flows_w));
         flows_w
@@ -182,53 +178,42 @@ impl<T: Topology> ThermalNetwork<T> {
         let cold = ports.cold.map_or(0.0, |node| link.cold_weight * temperatures_k[node.index()]);
         flows_w[LINK] = link.conductance_w_k * (hot - cold + link.offset_k);
     }
-}
 
-/// A factorised backward-Euler step; solves for any heat sources.
-#[derive(Debug)]
-pub struct FactorisedStep<T> {
-    entries: [f64; MAXIMUM_ENTRIES],
-    constant_w: NodeValues,
-    capacity_rates_w_k: NodeValues,
-    topology: PhantomData<T>,
-}
-
-impl<T: Topology> FactorisedStep<T> {
     /// Temperatures at the end of the step [K] from those at its beginning and the heat sources [W].
     ///
     /// Inlined, so that a caller who reads only some of the temperatures does not pay for the others.
     #[must_use]
     #[inline(always)]
-    pub fn advance(&self, temperatures_k: &NodeValues, sources_w: &NodeValues) -> NodeValues {
+    pub fn advance(step: &Factors, temperatures_k: &NodeValues, sources_w: &NodeValues) -> NodeValues {
         let mut right = *sources_w;
         for i in 0..T::NODES {
-            right[i] += fused(self.capacity_rates_w_k[i], temperatures_k[i], self.constant_w[i]);
+            right[i] += fused(step.capacity_rates_w_k[i], temperatures_k[i], step.constant_w[i]);
         }
-        self.substitute(right)
+        Self::substitute(step, right)
     }
 
     /// Change of all temperatures per watt brought in by `sources_w` [K].
     #[must_use]
     #[inline(always)]
-    pub fn response(&self, sources_w: &NodeValues) -> NodeValues {
-        self.substitute(*sources_w)
+    pub fn response(step: &Factors, sources_w: &NodeValues) -> NodeValues {
+        Self::substitute(step, *sources_w)
     }
 
     #[inline(always)]
-    fn substitute(&self, mut right: NodeValues) -> NodeValues {
-        unrolled!(forward(&self.entries, &mut right));
-        unrolled!(backward(&self.entries, &mut right));
+    fn substitute(step: &Factors, mut right: NodeValues) -> NodeValues {
+        unrolled!(forward(&step.entries, &mut right));
+        unrolled!(backward(&step.entries, &mut right));
         right
     }
 
     #[inline(always)]
     fn forward<const POSITION: usize>(entries: &[f64; MAXIMUM_ENTRIES], right: &mut NodeValues) {
-        const { ThermalNetwork::<T>::ELIMINATION.forward.at(POSITION) }.apply_to_vector(entries, right);
+        const { Self::ELIMINATION.forward.at(POSITION) }.apply_to_vector(entries, right);
     }
 
     #[inline(always)]
     fn backward<const POSITION: usize>(entries: &[f64; MAXIMUM_ENTRIES], right: &mut NodeValues) {
-        const { ThermalNetwork::<T>::ELIMINATION.backward.at(POSITION) }.apply_to_vector(entries, right);
+        const { Self::ELIMINATION.backward.at(POSITION) }.apply_to_vector(entries, right);
     }
 }
 
@@ -257,10 +242,16 @@ mod tests {
         const KNOWN_FIRST: &'static [Node] = &[B];
     }
 
-    fn chain() -> ThermalNetwork<Chain> {
+    type Network = ThermalNetwork<Chain>;
+
+    fn capacities() -> NodeValues {
         let mut capacities = NodeValues::default();
         capacities[..3].copy_from_slice(&[1000.0, 500.0, 200.0]);
-        ThermalNetwork::new(capacities)
+        capacities
+    }
+
+    fn advanced(links: &[LinkState], step_s: f64, sources: &NodeValues) -> NodeValues {
+        Network::advance(&Network::factorise(&capacities(), links, step_s), &start(), sources)
     }
 
     fn links(branch_w_k: f64) -> [LinkState; 4] {
@@ -280,7 +271,7 @@ mod tests {
 
     #[test]
     fn a_long_step_reaches_the_temperature_of_the_surroundings() {
-        let end = chain().factorise(&links(0.0), 1e12).advance(&start(), &NodeValues::default());
+        let end = advanced(&links(0.0), 1e12, &NodeValues::default());
         for temperature in &end[..3] {
             assert!((temperature - 280.0).abs() < 1e-6);
         }
@@ -288,23 +279,25 @@ mod tests {
 
     #[test]
     fn stored_heat_changes_by_exactly_what_crosses_the_boundary() {
-        let (network, links) = (chain(), links(3.0));
+        let links = links(3.0);
         let mut sources = NodeValues::default();
         sources[A.index()] = 75.0;
-        let end = network.factorise(&links, 1.0).advance(&start(), &sources);
-        let flows = network.link_flows(&links, &end);
-        let residual = network.heat_gained_j(&start(), &end) - (75.0 - flows[2]);
+        let end = advanced(&links, 1.0, &sources);
+        let flows = Network::link_flows(&links, &end);
+        let residual = heat_gained_j(3, &capacities(), &start(), &end) - (75.0 - flows[2]);
         assert!(residual.abs() < 1e-9, "residual {residual} W");
     }
 
     #[test]
     fn a_source_acts_on_all_temperatures_as_the_difference_of_two_steps_says() {
-        let step = chain().factorise(&links(3.0), 2.0);
+        let step = Network::factorise(&capacities(), &links(3.0), 2.0);
         let mut sources = NodeValues::default();
         sources[B.index()] = 1.0;
-        let (without, with) =
-            (step.advance(&start(), &NodeValues::default()), step.advance(&start(), &sources));
-        let response = step.response(&sources);
+        let (without, with) = (
+            Network::advance(&step, &start(), &NodeValues::default()),
+            Network::advance(&step, &start(), &sources),
+        );
+        let response = Network::response(&step, &sources);
         for i in 0..3 {
             assert!((with[i] - without[i] - response[i]).abs() < 1e-12);
         }
@@ -312,8 +305,29 @@ mod tests {
 
     proptest! {
         #[test]
+        fn a_planned_network_does_the_same_to_the_last_bit(branch in 0.0..50.0_f64, step_s in 0.01..100.0_f64) {
+            use crate::numerics::planned_network::{PlannedNetwork, PlannedStep};
+            let planned = PlannedNetwork::new(Chain::NODES, Chain::LINKS, Chain::KNOWN_FIRST);
+            let (links, mut sources) = (links(branch), NodeValues::default());
+            sources[A.index()] = 75.0;
+            let step = Network::factorise(&capacities(), &links, step_s);
+            let mut same = PlannedStep::default();
+            planned.factorise(&capacities(), &links, step_s, &mut same);
+            let end = Network::advance(&step, &start(), &sources);
+            prop_assert_eq!(end, planned.advance(&same, &start(), &sources));
+            let mut flows = [0.0; MAXIMUM_LINKS];
+            planned.for_link_flows(&links, &end, |place, flow_w| flows[place] = flow_w);
+            prop_assert_eq!(Network::link_flows(&links, &end), flows);
+            let mut known = [[0.0; 4]];
+            let probes = [sources, NodeValues::default(), NodeValues::default()];
+            planned.forecast(&same, &start(), &sources, &probes, Chain::KNOWN_FIRST, &mut known);
+            prop_assert_eq!(known[0][0], end[B.index()]);
+            prop_assert_eq!(known[0][1], Network::response(&step, &sources)[B.index()]);
+        }
+
+        #[test]
         fn elimination_solves_what_a_dense_solver_solves(branch in 0.0..50.0_f64, step_s in 0.01..100.0_f64) {
-            let end = chain().factorise(&links(branch), step_s).advance(&start(), &NodeValues::default());
+            let end = advanced(&links(branch), step_s, &NodeValues::default());
             let rates = [1000.0, 500.0, 200.0].map(|capacity: f64| capacity / step_s);
             let half = 0.5 * branch;
             let dense = nalgebra::Matrix3::new(

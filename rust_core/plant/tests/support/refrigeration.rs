@@ -4,13 +4,16 @@ use hp_plant::circuits::refrigeration_cycle::RefrigerationCycle;
 use hp_plant::circuits::refrigeration_cycle::RefrigerationParameters;
 use hp_plant::circuits::refrigeration_loop::{LoopBoundary, SupplyLimit};
 use hp_plant::components::compressor::CompressorParameters;
+use hp_plant::components::heat_exchanger::inlet_conductance_w_k;
 use hp_plant::media::refrigerant::RefrigerantTable;
+
+/// Conductances of its condenser and its evaporator [W/K].
+pub const CONDENSER_UA_W_K: f64 = 700.0;
+pub const EVAPORATOR_UA_W_K: f64 = 600.0;
 
 /// Parameters of the test loop.
 pub fn parameters() -> RefrigerationParameters {
     RefrigerationParameters {
-        condenser_ua_w_k: 700.0,
-        evaporator_ua_w_k: 600.0,
         superheat_k: 5.0,
         subcooling_k: 5.0,
         maximum_pressure_bar: 30.0,
@@ -52,6 +55,10 @@ pub fn boundary(hot_return_degc: f64, cold_return_degc: f64, hot_w_k: f64, cold_
     LoopBoundary {
         hot_return_k,
         cold_return_k,
+        hottest_inlet_k: hot_return_k,
+        coldest_inlet_k: cold_return_k,
+        hot_conductance_w_k: inlet_conductance_w_k(hot_w_k, CONDENSER_UA_W_K),
+        cold_conductance_w_k: inlet_conductance_w_k(cold_w_k, EVAPORATOR_UA_W_K),
         hot_capacity_rate_w_k: hot_w_k,
         cold_capacity_rate_w_k: cold_w_k,
         hot_supply: SupplyLimit { base_k: hot_return_k, sensitivity_k_w: 0.0, limit_k: 500.0 },

@@ -1,11 +1,10 @@
 //! What the benchmarks drive: stretches of built-in scenarios, prepared so that only the steps are timed.
 
-use hp_plant::command::{ACTUATORS, COMPRESSOR, Command, Connection, Demand, Member, RECIRCULATION, Scale};
+use hp_plant::command::Command;
 use hp_plant::config::library;
 use hp_plant::plant::StepRecord;
 use hp_trip::controllers::rule_based::CabinMode;
 use hp_trip::experiment::Experiment;
-use hp_trip::heat_demand_commander;
 use hp_trip::kinds::SCENARIO;
 use hp_trip::run::Run;
 use std::hint::black_box;
@@ -17,6 +16,26 @@ pub enum Driver {
     RuleBased,
     /// Commands made beforehand, one a second.
     Prepared(Vec<Command>),
+}
+
+/// What steps the thermal network.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Executor {
+    /// The one that was compiled for the architecture, where there is one.
+    Own,
+    /// The one for any architecture.
+    Planned,
+}
+
+impl Executor {
+    /// A built-in scenario.
+    fn experiment(self, name: &str) -> Arc<Experiment> {
+        let mut experiment = Experiment::load(name, None, &[]).expect("built-in scenario");
+        if self == Self::Planned {
+            experiment.plant = Arc::new(Arc::unwrap_or_clone(experiment.plant).with_planned_network());
+        }
+        Arc::new(experiment)
+    }
 }
 
 /// A stretch of a run.
@@ -68,10 +87,10 @@ fn compressor_on(experiment: &Experiment) -> Vec<(Run, bool)> {
 }
 
 /// All stretches of the paper's nine scenarios during which the compressor runs.
-pub fn compressor_on_segments() -> Vec<Segment> {
+pub fn compressor_on_segments(executor: Executor) -> Vec<Segment> {
     let mut segments = Vec::new();
     for name in library::names(SCENARIO).iter().filter(|name| name.starts_with("jeffs2019/")) {
-        let experiment = Arc::new(Experiment::load(name, None, &[]).expect("built-in scenario"));
+        let experiment = executor.experiment(name);
         let steps = compressor_on(&experiment);
         let mut from = 0;
         while from < steps.len() {
@@ -92,10 +111,10 @@ pub fn compressor_on_segments() -> Vec<Segment> {
 
 /// Whole trips of all built-in scenarios under actions drawn uniformly each second, as by an agent that knows
 /// nothing: six connections, PTC and eleven levels of compressor power; everything else as the scenario has it.
-pub fn random_segments() -> Vec<Segment> {
+pub fn random_segments(executor: Executor) -> Vec<Segment> {
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let segment = |name: &&str| {
-        let experiment = Arc::new(Experiment::load(name, None, &[]).expect("built-in scenario"));
+        let experiment = executor.experiment(name);
         let (mut run, mut commands) = (experiment.start(), Vec::new());
         loop {
             let command = random_command(&experiment, &mut random);
@@ -116,25 +135,30 @@ pub fn random_segments() -> Vec<Segment> {
 
 fn random_command(experiment: &Experiment, random: &mut Random) -> Command {
     let ranges = &experiment.plant.ranges;
-    let mut connections = [Connection::Isolated; 6];
-    for member in Member::ALL {
-        connections[member as usize] = member.options()[random.below(member.options().len())];
+    let layout = experiment.plant.layout();
+    let mut demand = experiment.commander.requested(0.0);
+    for member in &layout.members {
+        if let Some(row) = member.connection_row {
+            demand[row] = random.below(member.options.len() + 1) as f64;
+        }
     }
-    let cooling = connections[Member::Cabin as usize] == Connection::Chiller;
+    let cooling = layout.cabins[0].cooler.is_some_and(|cooler| {
+        let branch = layout.branches[cooler];
+        let row = layout.members[branch.member].connection_row;
+        row.is_some_and(|row| demand[row] == branch.option as f64)
+    });
+    for heater in &layout.heaters {
+        demand[heater.row] = random.below(2) as f64;
+    }
     let mode = if cooling { CabinMode::Cooling } else { CabinMode::Heating };
-    let requests_w = heat_demand_commander::requests_w(&experiment.scenario.heat_demand, 0.0);
-    let demand = Demand {
-        connections,
-        ptc_allowed: random.below(2) == 1,
-        ..experiment.rules.constant_settings().demand(mode, &requests_w)
-    };
+    experiment.rules.constant_settings().enter(mode, experiment.rules.roles(), &mut demand);
     let mut command = ranges.encode(&demand);
-    debug_assert_eq!(ACTUATORS[COMPRESSOR].scale, Scale::OffThenLogarithmic);
-    debug_assert_eq!(ACTUATORS[RECIRCULATION].name, "recirculation");
-    command.0[COMPRESSOR] = match random.below(11) {
-        0 => -1.0,
-        level => -0.9 + 1.9 * (level - 1) as f32 / 9.0,
-    };
+    if let Some(row) = layout.compressor_row {
+        command.0[row] = match random.below(11) {
+            0 => -1.0,
+            level => -0.9 + 1.9 * (level - 1) as f32 / 9.0,
+        };
+    }
     command
 }
 

@@ -3,6 +3,7 @@
 use super::{RuleParameters, Rules};
 use crate::kinds::CONTROLLER;
 use crate::strategy::{Strategy, StrategyChanges};
+use hp_plant::architecture::layout::Layout;
 use hp_plant::config::library::{self, Override};
 use hp_plant::config::{Celsius, Validate, Violation, check_range};
 use hp_plant::error::{PlantError, PlantResult};
@@ -73,15 +74,20 @@ impl Controller {
         Ok(Self { parameters: RuleParameters::read(name, table)?, bands })
     }
 
-    /// The rules at an ambient temperature, for a scenario that allows `strategy`.
+    /// The rules at an ambient temperature, for a scenario that allows `strategy` and a vehicle.
     ///
     /// The first band that reaches up to the temperature holds; above all bands, what stands outside of them.
     #[must_use]
-    pub fn at(&self, ambient: Celsius, strategy: &Strategy) -> Rules {
+    pub fn at(&self, ambient: Celsius, strategy: &Strategy, layout: &Layout) -> Rules {
         match self.bands.iter().find(|band| ambient <= band.up_to_degc) {
-            Some(band) => band.parameters.controller(band.strategy.applied_to(strategy)),
-            None => self.parameters.controller(strategy.clone()),
+            Some(band) => band.parameters.controller(band.strategy.applied_to(strategy), layout),
+            None => self.parameters.controller(strategy.clone(), layout),
         }
+    }
+
+    /// Members that its bands' changes of the strategy name.
+    pub fn members(&self) -> impl Iterator<Item = &str> {
+        self.bands.iter().flat_map(|band| band.strategy.members.keys().map(String::as_str))
     }
 }
 
@@ -109,9 +115,9 @@ mod tests {
              [[ambient_bands]]\nup_to_degc = 5.0\ncontroller.battery.heat_up_to_degc = 10.0\n",
         )
         .expect("valid");
-        let strategy =
-            Experiment::load("jeffs2019/case1-1", None, &[]).expect("built in").scenario.strategy.clone();
-        let at = |degc: f64| match controller.at(Celsius(degc), &strategy) {
+        let experiment = Experiment::load("jeffs2019/case1-1", None, &[]).expect("built in");
+        let (strategy, layout) = (experiment.scenario.strategy.clone(), experiment.plant.layout());
+        let at = |degc: f64| match controller.at(Celsius(degc), &strategy, layout) {
             Rules::Hpcu(hpcu) => hpcu,
             other => panic!("{other:?}"),
         };
@@ -120,7 +126,7 @@ mod tests {
         assert_eq!(at(-9.9), at(5.0));
         assert_eq!(at(5.0).parameters.battery.heat_up_to_degc, Celsius(10.0));
         assert_eq!(at(5.0).parameters.battery.cool_above_degc, Celsius(30.0));
-        assert_eq!(Rules::Hpcu(at(5.1)), controller.parameters.controller(strategy.clone()));
+        assert_eq!(Rules::Hpcu(at(5.1)), controller.parameters.controller(strategy.clone(), layout));
     }
 
     #[test]
@@ -129,7 +135,7 @@ mod tests {
             ("[[ambient_bands]]\nup_to_degc = 500.0\n", "ambient_bands[0]"),
             ("[[ambient_bands]]\nup_to_degc = 0.0\n[[ambient_bands]]\nup_to_degc = -5.0\n", "above that of"),
             ("[[ambient_bands]]\nup_to_degc = 0.0\ncontroller.htc_set_point_degc = 500.0\n", "htc_set_point"),
-            ("[[ambient_bands]]\nup_to_degc = 0.0\nstrategy.sun = true\n", "sun"),
+            ("[[ambient_bands]]\nup_to_degc = 0.0\nstrategy.ptc = 3\n", "ptc"),
             ("ambient_bands = 3\n", "list of tables"),
             ("rules = \"hpcuu\"\n", "`rules` is \"hpcuu\", but must be one of hpcu, thermostat"),
             ("rules = 3\n", "must be one of hpcu, thermostat"),

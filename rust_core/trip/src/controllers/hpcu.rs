@@ -3,11 +3,11 @@
 //! Three purposes: constant coolant flow demands, connections of the components, compressor demand. It reads
 //! the plant's temperatures as a real one does and has no way to the plant but its [`Demand`].
 
-use super::rule_based::{CabinMode, ConstantSettings, RuleBased};
+use super::rule_based::{CabinMode, ConstantSettings, Presets, RuleBased};
+use crate::roles::{Connectable, Roles, Store, Way};
 use crate::strategy::{BatteryTreatment, ClimateControl, Strategy};
-use hp_plant::circuits::assembly::NODES;
-use hp_plant::circuits::branches::Branch;
-use hp_plant::command::{Connection, Demand, MAXIMUM_REQUEST_W, Member};
+use hp_plant::architecture::layout::Layout;
+use hp_plant::command::{Demand, ISOLATED};
 use hp_plant::components::pid::{PidParameters, ResetGains, ResetPid};
 use hp_plant::config::Celsius;
 use hp_plant::numerics::thermal_network::Node;
@@ -75,16 +75,19 @@ parameters! {
     }
 }
 
-/// Stage of the thermal battery: each is left once and never entered again.
+/// Stage of a store (the paper's thermal battery): each is left once and never entered again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum ThermalBatteryStage {
-    /// Helps to warm the HTC.
-    HeatingHtc,
-    /// Emptied into the chiller loop.
+pub enum StoreStage {
+    /// Helps to warm a hot loop.
+    HeatingHotLoop,
+    /// Emptied into a cold loop.
     Emptying,
     /// Isolated.
     Empty,
 }
+
+/// Stores that the HPCU can look after.
+const STORE_PLACES: usize = 4;
 
 /// Memory of the HPCU.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -95,8 +98,8 @@ pub struct HpcuMemory {
     pub heats_battery: bool,
     /// The battery is being cooled.
     pub cools_battery: bool,
-    /// Thermal battery.
-    pub thermal_battery: ThermalBatteryStage,
+    /// Stores, in the order of the roles.
+    pub stores: [StoreStage; STORE_PLACES],
     /// Compressor power demanded last [W].
     demanded_w: f64,
     cabin_pid: ResetPid,
@@ -118,6 +121,8 @@ pub struct Hpcu {
     pub parameters: HpcuParameters,
     /// Sources, battery treatment, PTC.
     pub strategy: Strategy,
+    roles: Roles,
+    presets: Presets,
     gains: PowerGains,
 }
 
@@ -130,11 +135,23 @@ struct PowerGains {
     chiller: ResetGains,
 }
 
+/// What parameters ask for whatever happens.
+fn constant_settings(parameters: &HpcuParameters) -> ConstantSettings {
+    ConstantSettings {
+        cabin_set_point_degc: parameters.cabin_set_point_degc,
+        htc_flow_kg_s: parameters.htc_flow_kg_s,
+        chiller_flow_kg_s: parameters.chiller_flow_kg_s,
+        blower_level: parameters.blower_level,
+        heating_recirculation: parameters.heating_recirculation,
+        cooling_recirculation: parameters.cooling_recirculation,
+    }
+}
+
 impl RuleBased for Hpcu {
     type Parameters = HpcuParameters;
     type Memory = HpcuMemory;
 
-    fn new(parameters: HpcuParameters, strategy: Strategy) -> Self {
+    fn new(parameters: HpcuParameters, strategy: Strategy, layout: &Layout) -> Self {
         let gains = |pid: &PidParameters| ResetGains::new(pid, CONTROL_PERIOD_S);
         let gains = PowerGains {
             cabin: gains(&parameters.cabin_pid),
@@ -142,29 +159,27 @@ impl RuleBased for Hpcu {
             htc: gains(&parameters.htc_pid),
             chiller: gains(&parameters.chiller_pid),
         };
-        Self { parameters, strategy, gains }
+        let roles = Roles::of(layout, &strategy);
+        let presets = Presets::of(&roles, &constant_settings(&parameters));
+        Self { roles, presets, parameters, strategy, gains }
+    }
+
+    fn roles(&self) -> &Roles {
+        &self.roles
     }
 
     fn constant_settings(&self) -> ConstantSettings {
-        let parameters = &self.parameters;
-        ConstantSettings {
-            cabin_set_point_degc: parameters.cabin_set_point_degc,
-            htc_flow_kg_s: parameters.htc_flow_kg_s,
-            chiller_flow_kg_s: parameters.chiller_flow_kg_s,
-            blower_level: parameters.blower_level,
-            heating_recirculation: parameters.heating_recirculation,
-            cooling_recirculation: parameters.cooling_recirculation,
-        }
+        constant_settings(&self.parameters)
     }
 
     fn awake(&self, _: &Plant, state: &State) -> HpcuMemory {
-        let cabin_k = temperature_k(state, NODES.cabin);
+        let cabin_k = temperature_k(state, self.roles.cabin_air);
         let warm = cabin_k > self.parameters.cabin_set_point_degc.kelvin();
         HpcuMemory {
             cabin_mode: if warm { CabinMode::Cooling } else { CabinMode::Heating },
             heats_battery: false,
             cools_battery: false,
-            thermal_battery: ThermalBatteryStage::HeatingHtc,
+            stores: [StoreStage::HeatingHotLoop; STORE_PLACES],
             demanded_w: 0.0,
             cabin_pid: ResetPid::default(),
             battery_pid: ResetPid::default(),
@@ -173,24 +188,24 @@ impl RuleBased for Hpcu {
         }
     }
 
-    fn demand(&self, plant: &Plant, state: &State, memory: &mut HpcuMemory, requests_w: &[f64; 6]) -> Demand {
+    fn demand(&self, plant: &Plant, state: &State, memory: &mut HpcuMemory, demand: &mut Demand) {
         let mode = self.cabin_mode(state, memory);
-        let mut demand = Demand {
-            connections: self.connections(plant, state, memory, mode),
-            ptc_allowed: self.strategy.ptc
-                && mode == CabinMode::Heating
-                && self.cabin_error_k(state, mode) >= self.parameters.ptc_from_deviation_k,
-            ..self.constant_settings().demand(mode, requests_w)
-        };
-        self.trim_requests(state, memory, mode, &mut demand);
-        demand.compressor_power_w = self.compressor_power_w(plant, state, memory, mode);
-        demand
+        self.connect(plant, state, memory, mode, demand);
+        let heats = self.strategy.ptc
+            && mode == CabinMode::Heating
+            && self.cabin_error_k(state, mode) >= self.parameters.ptc_from_deviation_k;
+        self.roles.allow_heaters(heats, demand);
+        self.trim_requests(state, memory, mode, demand);
+        if let Some(row) = self.roles.compressor_row {
+            demand[row] = self.compressor_power_w(plant, state, memory, mode);
+        }
     }
 }
 
 impl Hpcu {
     fn cabin_mode(&self, state: &State, memory: &mut HpcuMemory) -> CabinMode {
-        let above_k = temperature_k(state, NODES.cabin) - self.parameters.cabin_set_point_degc.kelvin();
+        let above_k =
+            temperature_k(state, self.roles.cabin_air) - self.parameters.cabin_set_point_degc.kelvin();
         memory.cabin_mode = match self.strategy.climate_control {
             ClimateControl::Heat => CabinMode::Heating,
             ClimateControl::Cool => CabinMode::Cooling,
@@ -201,32 +216,30 @@ impl Hpcu {
         memory.cabin_mode
     }
 
-    fn connections(
+    fn connect(
         &self,
         plant: &Plant,
         state: &State,
         memory: &mut HpcuMemory,
         mode: CabinMode,
-    ) -> [Connection; 6] {
-        let heating = mode == CabinMode::Heating;
-        let source = |selected: bool| {
-            if selected && heating { Connection::Chiller } else { Connection::Isolated }
-        };
-        let mut connections = [Connection::Isolated; 6];
-        let mut set = |member: Member, connection: Connection| connections[member as usize] = connection;
-        set(Member::Battery, self.battery_connection(state, memory));
-        set(Member::Motor, source(self.strategy.motor));
-        set(Member::Transmission, source(self.strategy.transmission));
-        // Air conditioning rejects its heat through the front-end exchanger.
-        set(Member::Ambient, if heating { source(self.strategy.ambient) } else { Connection::Htc });
-        set(Member::ThermalBattery, self.thermal_battery_connection(plant, state, memory));
-        set(Member::Cabin, if heating { Connection::Htc } else { Connection::Chiller });
-        connections
+        demand: &mut Demand,
+    ) {
+        self.presets.enter(mode, demand);
+        if let Some(battery) = self.roles.battery {
+            battery.connect(demand, self.battery_way(&battery, state, memory));
+        }
+        for &(row, option) in &self.roles.plates {
+            demand[row] = if memory.cools_battery { option } else { ISOLATED };
+        }
+        for (store, stage) in self.roles.stores.iter().zip(&mut memory.stores) {
+            let way = store_way(store, stage, plant, state);
+            demand[store.row] = way.map_or(ISOLATED, |way| way.option as f64);
+        }
     }
 
-    fn battery_connection(&self, state: &State, memory: &mut HpcuMemory) -> Connection {
+    fn battery_way(&self, battery: &Connectable, state: &State, memory: &mut HpcuMemory) -> Option<Way> {
         let limits = &self.parameters.battery;
-        let battery_k = temperature_k(state, NODES.battery);
+        let battery_k = temperature_k(state, self.roles.battery_node);
         let heat_up_to_k = limits.heat_up_to_degc.kelvin();
         let cool_above_k = limits.cool_above_degc.kelvin();
         (memory.heats_battery, memory.cools_battery) = match self.strategy.battery {
@@ -241,61 +254,35 @@ impl Hpcu {
             }
         };
         match (memory.heats_battery, memory.cools_battery) {
-            (true, _) => Connection::Htc,
-            (false, true) => Connection::Chiller,
-            (false, false) => Connection::Isolated,
-        }
-    }
-
-    /// First HTC while it can heat it, then chiller until empty, then isolated.
-    fn thermal_battery_connection(
-        &self,
-        plant: &Plant,
-        state: &State,
-        memory: &mut HpcuMemory,
-    ) -> Connection {
-        if !self.strategy.thermal_battery {
-            return Connection::Isolated;
-        }
-        let temperatures = plant.branch_temperatures(state, 0.0, 0.0);
-        let switch = &plant.vehicle.controls.thermal_switch;
-        let useful = |branch: Branch| {
-            let connected = state.connected[branch as usize];
-            let least_k = if connected { switch.opening_difference_k } else { switch.closing_difference_k };
-            temperatures.difference_k(branch) > least_k
-        };
-        if memory.thermal_battery == ThermalBatteryStage::HeatingHtc && !useful(Branch::ThermalBatteryHtc) {
-            memory.thermal_battery = ThermalBatteryStage::Emptying;
-        }
-        if memory.thermal_battery == ThermalBatteryStage::Emptying && !useful(Branch::ThermalBatteryChiller) {
-            memory.thermal_battery = ThermalBatteryStage::Empty;
-        }
-        match memory.thermal_battery {
-            ThermalBatteryStage::HeatingHtc => Connection::Htc,
-            ThermalBatteryStage::Emptying => Connection::Chiller,
-            ThermalBatteryStage::Empty => Connection::Isolated,
+            (true, _) => battery.heats,
+            (false, true) => battery.cools,
+            (false, false) => None,
         }
     }
 
     /// Lets requests fade near their targets, so that neither cabin nor battery overshoots.
     fn trim_requests(&self, state: &State, memory: &HpcuMemory, mode: CabinMode, demand: &mut Demand) {
         let beyond_k = self.cabin_error_k(state, mode) + self.parameters.cabin_request_band_k;
-        demand.requests_w[Member::Cabin as usize] *=
-            (beyond_k / self.parameters.cabin_request_band_k).clamp(0.0, 1.0);
-        if self.strategy.battery == BatteryTreatment::Source && memory.cools_battery {
+        for cabin in &self.roles.cabins {
+            demand[cabin.request_row] *= (beyond_k / self.parameters.cabin_request_band_k).clamp(0.0, 1.0);
+        }
+        if let Some(battery) = self.roles.battery
+            && self.strategy.battery == BatteryTreatment::Source
+            && memory.cools_battery
+        {
             let limits = &self.parameters.battery;
-            let above_k = temperature_k(state, NODES.battery) - limits.source_down_to_degc.kelvin();
-            demand.requests_w[Member::Battery as usize] *=
-                (above_k / limits.source_request_band_k).clamp(0.0, 1.0);
+            let above_k = temperature_k(state, self.roles.battery_node) - limits.source_down_to_degc.kelvin();
+            demand[battery.request_row] *= (above_k / limits.source_request_band_k).clamp(0.0, 1.0);
         }
         if mode == CabinMode::Cooling {
-            demand.requests_w[Member::Ambient as usize] = MAXIMUM_REQUEST_W;
+            self.roles.unlimit_rejection(demand);
         }
     }
 
     /// Deviation that calls for compressor power [K].
     fn cabin_error_k(&self, state: &State, mode: CabinMode) -> f64 {
-        let below_k = self.parameters.cabin_set_point_degc.kelvin() - temperature_k(state, NODES.cabin);
+        let below_k =
+            self.parameters.cabin_set_point_degc.kelvin() - temperature_k(state, self.roles.cabin_air);
         match mode {
             CabinMode::Heating => below_k,
             CabinMode::Cooling => -below_k,
@@ -310,10 +297,11 @@ impl Hpcu {
         memory: &mut HpcuMemory,
         mode: CabinMode,
     ) -> f64 {
-        if !self.strategy.heat_pump {
+        let Some(refrigeration) = plant.vehicle.refrigeration.as_ref().filter(|_| self.strategy.heat_pump)
+        else {
             return 0.0;
-        }
-        let highest_w = plant.vehicle.refrigeration.compressor.maximum_power_w;
+        };
+        let highest_w = refrigeration.compressor.maximum_power_w;
         let applied_w = if state.refrigeration.compressor.running {
             state.compressor_power_w
         } else {
@@ -332,31 +320,62 @@ impl Hpcu {
         if battery_w == 0.0 {
             memory.battery_pid.clear();
         }
-        let htc_error_k = parameters.htc_set_point_degc.kelvin() - temperature_k(state, NODES.htc_supply);
         let chiller_set_point = match mode {
             CabinMode::Heating => parameters.chiller_set_point_degc,
             CabinMode::Cooling => parameters.cooling_chiller_set_point_degc,
         };
-        let chiller_error_k = temperature_k(state, NODES.chiller_supply) - chiller_set_point.kelvin();
-        let htc_w = power(&mut memory.htc_pid, &self.gains.htc, htc_error_k);
-        let chiller_w = power(&mut memory.chiller_pid, &self.gains.chiller, chiller_error_k);
+        let supply_k = |nodes: &[Node], further: fn(f64, f64) -> f64| {
+            nodes.iter().map(|&node| temperature_k(state, node)).reduce(further)
+        };
+        // Without such a loop nothing limits the compressor on that side.
+        let htc_w = supply_k(&self.roles.hot_supplies, f64::max).map_or(highest_w, |supply_k| {
+            let error_k = parameters.htc_set_point_degc.kelvin() - supply_k;
+            power(&mut memory.htc_pid, &self.gains.htc, error_k)
+        });
+        let chiller_w = supply_k(&self.roles.cold_supplies, f64::min).map_or(highest_w, |supply_k| {
+            power(&mut memory.chiller_pid, &self.gains.chiller, supply_k - chiller_set_point.kelvin())
+        });
         memory.demanded_w = cabin_w.max(battery_w).min(htc_w).min(chiller_w);
         memory.demanded_w
     }
 
     /// Deviation of the battery from its target while the loops act on it [K].
     fn battery_error_k(&self, state: &State, memory: &HpcuMemory) -> Option<f64> {
-        let battery_k = temperature_k(state, NODES.battery);
+        let battery_k = temperature_k(state, self.roles.battery_node);
         let limits = &self.parameters.battery;
         if memory.heats_battery {
-            return state.connected[Branch::BatteryHtc as usize]
-                .then(|| limits.heat_up_to_degc.kelvin() - battery_k);
+            let heated = self.roles.battery.and_then(|battery| battery.heats)?;
+            return state.connected[heated.branch].then(|| limits.heat_up_to_degc.kelvin() - battery_k);
         }
         let target_k = match self.strategy.battery {
             BatteryTreatment::Source => limits.source_down_to_degc.kelvin(),
             _ => limits.cool_above_degc.kelvin(),
         };
+        self.roles.battery.and_then(|battery| battery.cools)?;
         memory.cools_battery.then_some(battery_k - target_k)
+    }
+}
+
+/// First into a hot loop while it can heat that, then into a cold one until it is empty, then isolated.
+fn store_way(store: &Store, stage: &mut StoreStage, plant: &Plant, state: &State) -> Option<Way> {
+    let switch = &plant.vehicle.controls.thermal_switch;
+    let useful = |way: Option<Way>| {
+        way.is_some_and(|way| {
+            let connected = state.connected[way.branch];
+            let least_k = if connected { switch.opening_difference_k } else { switch.closing_difference_k };
+            plant.mass_difference_k(state, way.branch) > least_k
+        })
+    };
+    if *stage == StoreStage::HeatingHotLoop && !useful(store.into_hot) {
+        *stage = StoreStage::Emptying;
+    }
+    if *stage == StoreStage::Emptying && !useful(store.into_cold) {
+        *stage = StoreStage::Empty;
+    }
+    match stage {
+        StoreStage::HeatingHotLoop => store.into_hot,
+        StoreStage::Emptying => store.into_cold,
+        StoreStage::Empty => None,
     }
 }
 

@@ -8,7 +8,9 @@ pub mod hpcu;
 pub mod rule_based;
 pub mod thermostat;
 
+use crate::roles::Roles;
 use crate::strategy::Strategy;
+use hp_plant::architecture::layout::Layout;
 use hp_plant::command::Demand;
 use hp_plant::config::Violation;
 use hp_plant::config::library;

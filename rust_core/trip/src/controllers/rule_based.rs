@@ -1,6 +1,8 @@
 //! What a rule-based controller is, and the closed set of them as plain data.
 
+use crate::roles::Roles;
 use crate::strategy::Strategy;
+use hp_plant::architecture::layout::Layout;
 use hp_plant::command::Demand;
 use hp_plant::config::{Celsius, Validate};
 use hp_plant::plant::Plant;
@@ -45,17 +47,53 @@ impl ConstantSettings {
         }
     }
 
-    /// A demand with these settings; everything else as [`Demand::default`] has it.
+    /// Rows and values of these settings in a mode.
     #[must_use]
-    pub fn demand(&self, mode: CabinMode, requests_w: &[f64; 6]) -> Demand {
-        Demand {
-            recirculation: self.recirculation(mode),
-            blower_level: self.blower_level,
-            htc_flow_kg_s: self.htc_flow_kg_s,
-            chiller_flow_kg_s: self.chiller_flow_kg_s,
-            requests_w: *requests_w,
-            cabin_set_point_k: self.cabin_set_point_degc.kelvin(),
-            ..Demand::default()
+    pub fn rows(&self, mode: CabinMode, roles: &Roles) -> Vec<(usize, f64)> {
+        let all = |rows: &[usize], value: f64| rows.iter().map(|&row| (row, value)).collect::<Vec<_>>();
+        [
+            all(&roles.recirculation_rows, self.recirculation(mode)),
+            all(&roles.blower_rows, self.blower_level),
+            all(&roles.hot_flow_rows, self.htc_flow_kg_s),
+            all(&roles.cold_flow_rows, self.chiller_flow_kg_s),
+            all(roles.set_point_row.as_slice(), self.cabin_set_point_degc.kelvin()),
+        ]
+        .concat()
+    }
+
+    /// Enters these settings into a demand.
+    pub fn enter(&self, mode: CabinMode, roles: &Roles, demand: &mut Demand) {
+        for (row, value) in self.rows(mode, roles) {
+            demand[row] = value;
+        }
+    }
+}
+
+/// What does not change while a mode lasts, as rows and values: connections by role, and constant settings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Presets {
+    heating: Box<[(usize, f64)]>,
+    cooling: Box<[(usize, f64)]>,
+}
+
+impl Presets {
+    /// Presets of roles and settings.
+    #[must_use]
+    pub fn of(roles: &Roles, settings: &ConstantSettings) -> Self {
+        let rows = |mode: CabinMode| {
+            let mut rows = roles.connections(mode == CabinMode::Heating);
+            rows.extend(settings.rows(mode, roles));
+            rows.into()
+        };
+        Self { heating: rows(CabinMode::Heating), cooling: rows(CabinMode::Cooling) }
+    }
+
+    /// Enters those of a mode into a demand.
+    #[inline]
+    pub fn enter(&self, mode: CabinMode, demand: &mut Demand) {
+        let rows = if mode == CabinMode::Heating { &self.heating } else { &self.cooling };
+        for &(row, value) in rows {
+            demand[row] = value;
         }
     }
 }
@@ -67,9 +105,13 @@ pub trait RuleBased: Debug + Clone + PartialEq {
     /// What it remembers from one control period to the next.
     type Memory: Debug + Clone + Copy + PartialEq + Serialize + DeserializeOwned;
 
-    /// A controller with parameters and what it may use.
+    /// A controller with parameters, what it may use, and what there is.
     #[must_use]
-    fn new(parameters: Self::Parameters, strategy: Strategy) -> Self;
+    fn new(parameters: Self::Parameters, strategy: Strategy, layout: &Layout) -> Self;
+
+    /// What it found in the vehicle.
+    #[must_use]
+    fn roles(&self) -> &Roles;
 
     /// What it asks for whatever happens.
     #[must_use]
@@ -79,14 +121,9 @@ pub trait RuleBased: Debug + Clone + PartialEq {
     #[must_use]
     fn awake(&self, plant: &Plant, state: &State) -> Self::Memory;
 
-    /// Demand for the next control period, given the heat flows requested by the heatDemandCommander [W].
-    fn demand(
-        &self,
-        plant: &Plant,
-        state: &State,
-        memory: &mut Self::Memory,
-        requests_w: &[f64; 6],
-    ) -> Demand;
+    /// Enters what it asks for in the next control period into a demand that has everything off and the heat flows that the
+    /// heatDemandCommander requests.
+    fn demand(&self, plant: &Plant, state: &State, memory: &mut Self::Memory, demand: &mut Demand);
 }
 
 /// Declares the closed set of rule-based controllers: of each its file's name, by which `rules = "..."` selects it, and its
@@ -130,12 +167,12 @@ macro_rules! rule_based_controllers {
                 }
             }
 
-            /// The controller with these parameters and what it may use.
+            /// The controller with these parameters, what it may use, and what there is.
             #[must_use]
-            pub fn controller(&self, strategy: Strategy) -> Rules {
+            pub fn controller(&self, strategy: Strategy, layout: &Layout) -> Rules {
                 match self {
                     $( Self::$controller(parameters) => {
-                        Rules::$controller(RuleBased::new(parameters.clone(), strategy))
+                        Rules::$controller(RuleBased::new(parameters.clone(), strategy, layout))
                     } )+
                 }
             }
@@ -150,6 +187,14 @@ macro_rules! rule_based_controllers {
                 }
             }
 
+            /// What the controller found in the vehicle.
+            #[must_use]
+            pub fn roles(&self) -> &Roles {
+                match self {
+                    $( Self::$controller(rules) => rules.roles(), )+
+                }
+            }
+
             /// Memory at the start of a run.
             #[must_use]
             pub fn awake(&self, plant: &Plant, state: &State) -> RuleMemory {
@@ -158,21 +203,21 @@ macro_rules! rule_based_controllers {
                 }
             }
 
-            /// Demand for the next control period; a memory of other rules counts as none.
+            /// Enters what the controller asks for in the next control period; a memory of other rules counts as none.
             pub fn demand(
                 &self,
                 plant: &Plant,
                 state: &State,
                 memory: &mut RuleMemory,
-                requests_w: &[f64; 6],
-            ) -> Demand {
+                demand: &mut Demand,
+            ) {
                 match (self, &mut *memory) {
                     $( (Self::$controller(rules), RuleMemory::$controller(memory)) => {
-                        rules.demand(plant, state, memory, requests_w)
+                        rules.demand(plant, state, memory, demand)
                     } )+
                     (rules, memory) => {
                         *memory = rules.awake(plant, state);
-                        rules.demand(plant, state, memory, requests_w)
+                        rules.demand(plant, state, memory, demand);
                     }
                 }
             }

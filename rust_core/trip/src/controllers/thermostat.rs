@@ -1,9 +1,10 @@
 //! A thermostat: full power on one side of a cabin temperature, none on the other. Untuned, to compare others with.
 
-use super::rule_based::{CabinMode, ConstantSettings, RuleBased};
+use super::rule_based::{CabinMode, ConstantSettings, Presets, RuleBased};
+use crate::roles::Roles;
 use crate::strategy::{ClimateControl, Strategy};
-use hp_plant::circuits::assembly::NODES;
-use hp_plant::command::{Connection, Demand, MAXIMUM_REQUEST_W, Member};
+use hp_plant::architecture::layout::Layout;
+use hp_plant::command::Demand;
 use hp_plant::config::Celsius;
 use hp_plant::parameters;
 use hp_plant::plant::Plant;
@@ -39,6 +40,8 @@ parameters! {
 pub struct Thermostat {
     parameters: ThermostatParameters,
     strategy: Strategy,
+    roles: Roles,
+    presets: Presets,
 }
 
 /// Memory of a thermostat.
@@ -50,8 +53,8 @@ pub struct ThermostatMemory {
 impl Thermostat {
     /// How far the cabin is beyond the target, counted in the direction that a mode works against [K].
     fn lack_k(&self, state: &State, mode: CabinMode) -> f64 {
-        let below_k =
-            self.parameters.cabin_set_point_degc.kelvin() - state.temperatures_k[NODES.cabin.index()];
+        let below_k = self.parameters.cabin_set_point_degc.kelvin()
+            - state.temperatures_k[self.roles.cabin_air.index()];
         match mode {
             CabinMode::Heating => below_k,
             CabinMode::Cooling => -below_k,
@@ -76,27 +79,17 @@ impl Thermostat {
     fn switches_on(&self, state: &State, mode: CabinMode) -> bool {
         self.lack_k(state, mode) > self.parameters.half_band_k
     }
+}
 
-    /// Cabin on the loop that serves it, sources on the chiller loop, battery and thermal battery isolated.
-    fn connections(&self, mode: CabinMode) -> [Connection; 6] {
-        let source = |allowed: bool| {
-            if allowed && mode == CabinMode::Heating { Connection::Chiller } else { Connection::Isolated }
-        };
-        let (cabin, ambient) = match mode {
-            CabinMode::Heating => (Connection::Htc, source(self.strategy.ambient)),
-            // Air conditioning rejects its heat through the front-end exchanger.
-            CabinMode::Cooling => (Connection::Chiller, Connection::Htc),
-        };
-        let mut connections = [Connection::Isolated; 6];
-        for (member, connection) in [
-            (Member::Motor, source(self.strategy.motor)),
-            (Member::Transmission, source(self.strategy.transmission)),
-            (Member::Ambient, ambient),
-            (Member::Cabin, cabin),
-        ] {
-            connections[member as usize] = connection;
-        }
-        connections
+/// What parameters ask for whatever happens.
+fn constant_settings(parameters: &ThermostatParameters) -> ConstantSettings {
+    ConstantSettings {
+        cabin_set_point_degc: parameters.cabin_set_point_degc,
+        htc_flow_kg_s: parameters.htc_flow_kg_s,
+        chiller_flow_kg_s: parameters.chiller_flow_kg_s,
+        blower_level: parameters.blower_level,
+        heating_recirculation: parameters.heating_recirculation,
+        cooling_recirculation: parameters.cooling_recirculation,
     }
 }
 
@@ -104,20 +97,18 @@ impl RuleBased for Thermostat {
     type Parameters = ThermostatParameters;
     type Memory = ThermostatMemory;
 
-    fn new(parameters: ThermostatParameters, strategy: Strategy) -> Self {
-        Self { parameters, strategy }
+    fn new(parameters: ThermostatParameters, strategy: Strategy, layout: &Layout) -> Self {
+        let roles = Roles::of(layout, &strategy);
+        let presets = Presets::of(&roles, &constant_settings(&parameters));
+        Self { roles, presets, parameters, strategy }
+    }
+
+    fn roles(&self) -> &Roles {
+        &self.roles
     }
 
     fn constant_settings(&self) -> ConstantSettings {
-        let parameters = &self.parameters;
-        ConstantSettings {
-            cabin_set_point_degc: parameters.cabin_set_point_degc,
-            htc_flow_kg_s: parameters.htc_flow_kg_s,
-            chiller_flow_kg_s: parameters.chiller_flow_kg_s,
-            blower_level: parameters.blower_level,
-            heating_recirculation: parameters.heating_recirculation,
-            cooling_recirculation: parameters.cooling_recirculation,
-        }
+        constant_settings(&self.parameters)
     }
 
     fn awake(&self, _: &Plant, state: &State) -> ThermostatMemory {
@@ -125,71 +116,65 @@ impl RuleBased for Thermostat {
         ThermostatMemory { mode: if warm { CabinMode::Cooling } else { CabinMode::Heating } }
     }
 
-    fn demand(
-        &self,
-        _: &Plant,
-        state: &State,
-        memory: &mut ThermostatMemory,
-        requests_w: &[f64; 6],
-    ) -> Demand {
+    /// Cabin on what heats or cools it, sources on the heat pump while it heats, battery and stores isolated.
+    fn demand(&self, _: &Plant, state: &State, memory: &mut ThermostatMemory, demand: &mut Demand) {
         memory.mode = self.mode(state, memory.mode);
         let mode = memory.mode;
-        let cabin_k = state.temperatures_k[NODES.cabin.index()];
-        let on = self.strategy.heat_pump && self.switches_on(state, mode);
-        let mut demand = Demand {
-            connections: self.connections(mode),
-            ptc_allowed: self.strategy.ptc
-                && mode == CabinMode::Heating
-                && cabin_k < self.parameters.ptc_below_degc.kelvin(),
-            compressor_power_w: if on { self.parameters.compressor_power_w } else { 0.0 },
-            ..self.constant_settings().demand(mode, requests_w)
-        };
-        if mode == CabinMode::Cooling {
-            demand.requests_w[Member::Ambient as usize] = MAXIMUM_REQUEST_W;
+        self.presets.enter(mode, demand);
+        let cabin_k = state.temperatures_k[self.roles.cabin_air.index()];
+        let cold = cabin_k < self.parameters.ptc_below_degc.kelvin();
+        self.roles.allow_heaters(self.strategy.ptc && mode == CabinMode::Heating && cold, demand);
+        if let Some(row) = self.roles.compressor_row {
+            let on = self.strategy.heat_pump && self.switches_on(state, mode);
+            demand[row] = if on { self.parameters.compressor_power_w } else { 0.0 };
         }
-        demand
+        if mode == CabinMode::Cooling {
+            self.roles.unlimit_rejection(demand);
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use crate::experiment::Experiment;
-    use hp_plant::circuits::assembly::NODES;
-    use hp_plant::command::{Connection, Demand, Member};
     use hp_plant::config::Celsius;
     use hp_plant::config::library::Override;
 
-    /// What the thermostat asks for with the cabin at a temperature.
-    fn demand(scenario: &str, cabin_degc: f64) -> Demand {
+    /// What the thermostat asks for with the cabin at a temperature: options by name, power of the compressor.
+    fn demand(scenario: &str, cabin_degc: f64) -> impl Fn(&str) -> f64 {
         let everything = ["motor", "transmission", "ambient", "ptc"].map(|source| {
             Override::parse(&format!("scenario.strategy.{source}=true")).expect("an assignment")
         });
         let experiment = Experiment::load(scenario, Some("thermostat"), &everything).expect("built in");
         let mut run = experiment.start();
-        run.state.temperatures_k[NODES.cabin.index()] = Celsius(cabin_degc).kelvin();
-        experiment.rules.demand(&experiment.plant, &run.state, &mut run.memory, &[0.0; 6])
+        run.state.temperatures_k[experiment.plant.layout().cabins[0].air.index()] =
+            Celsius(cabin_degc).kelvin();
+        let demand = experiment.demand(&mut run);
+        move |name: &str| demand[experiment.plant.ranges.row(name).expect("an actuator")]
     }
+
+    const HTC: f64 = 1.0;
+    const CHILLER: f64 = 2.0;
 
     #[test]
     fn heats_below_its_band_and_rests_within_it() {
         let cold = demand("jeffs2019/case1-4", 5.0);
-        assert!(cold.compressor_power_w > 0.0 && cold.ptc_allowed);
-        assert_eq!(cold.connections[Member::Cabin as usize], Connection::Htc);
-        assert_eq!(cold.connections[Member::Battery as usize], Connection::Isolated);
-        for source in [Member::Ambient, Member::Motor, Member::Transmission] {
-            assert_eq!(cold.connections[source as usize], Connection::Chiller);
+        assert!(cold("compressor_power") > 0.0 && cold("ptc") == 1.0);
+        assert_eq!((cold("cabin"), cold("battery")), (HTC, 0.0));
+        // Their first loop is the chiller.
+        for source in ["ambient", "motor", "transmission"] {
+            assert_eq!(cold(source), 1.0, "{source}");
         }
         let cool = demand("jeffs2019/case1-4", 20.9);
-        assert!(cool.compressor_power_w > 0.0 && !cool.ptc_allowed);
-        assert_eq!(demand("jeffs2019/case1-4", 21.1).compressor_power_w, 0.0);
+        assert!(cool("compressor_power") > 0.0 && cool("ptc") == 0.0);
+        assert_eq!(demand("jeffs2019/case1-4", 21.1)("compressor_power"), 0.0);
     }
 
     #[test]
     fn cools_above_its_band_through_the_front_end_exchanger() {
         let hot = demand("ours/hot-soak-plus35", 40.0);
-        assert!(hot.compressor_power_w > 0.0 && !hot.ptc_allowed);
-        assert_eq!(hot.connections[Member::Cabin as usize], Connection::Chiller);
-        assert_eq!(hot.connections[Member::Ambient as usize], Connection::Htc);
-        assert_eq!(demand("ours/hot-soak-plus35", 22.9).compressor_power_w, 0.0);
+        assert!(hot("compressor_power") > 0.0 && hot("ptc") == 0.0);
+        assert_eq!((hot("cabin"), hot("ambient")), (CHILLER, 2.0));
+        assert_eq!(demand("ours/hot-soak-plus35", 22.9)("compressor_power"), 0.0);
     }
 }

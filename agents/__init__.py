@@ -1,1 +1,0 @@
-"""Controllers for `hp_gym` environments, their training and comparison, and the command line."""

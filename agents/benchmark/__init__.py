@@ -1,1 +1,0 @@
-"""Controllers compared over held-out trips."""

@@ -1,1 +1,0 @@
-"""Fit of vehicle, controller and scenario parameters to published totals."""

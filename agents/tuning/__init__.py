@@ -1,1 +1,0 @@
-"""Rules at their best: modes and set points of the HPCU chosen on training trips."""

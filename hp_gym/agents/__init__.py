@@ -1,0 +1,1 @@
+"""Controllers for environments, policy files, and the training of policies."""

@@ -1,0 +1,1 @@
+"""The Gymnasium environments, what wraps them, and the paper's rules as a policy for them."""

@@ -1,0 +1,353 @@
+"""The single environment."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Unpack
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from hp_gym import _core
+from hp_gym.envs import settings
+
+if TYPE_CHECKING:
+    from hp_gym.envs.settings import Action, Keywords, Name
+    from hp_gym.pictures.rendering import Renderer
+    from hp_gym.pictures.window import Window
+
+
+class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
+    """The thermal system of an electric vehicle, driven from start to arrival.
+
+    ## Description
+
+    An electric vehicle after Jeffs et al. 2019 drives a cycle second by second. A refrigerant loop moves heat
+    between two coolant loops, the chiller (cold) and the high temperature circuit (HTC, hot). The agent
+    decides which components are connected to which loop, how hard the compressor works and whether the PTC
+    heater may help. It is paid for a comfortable cabin and for little energy.
+
+    The plant protects itself whatever the agent asks: a connection is only granted while there is a
+    temperature difference in the right direction, and pressure, coolant temperatures, compressor envelope,
+    battery power and frost on the front-end exchanger have limits of their own. `previous_...` observations
+    show what was asked, `..._on_htc` and `..._on_chiller` what was granted.
+
+    ## Action Space
+
+    `MultiDiscrete([3 2 2 3 3 3 2 11])`:
+
+    | Num | Action           | Options                         |
+    |-----|------------------|---------------------------------|
+    | 0   | battery          | isolated, htc, chiller          |
+    | 1   | motor            | isolated, chiller               |
+    | 2   | transmission     | isolated, chiller               |
+    | 3   | ambient          | isolated, chiller, htc          |
+    | 4   | thermal_battery  | isolated, htc, chiller          |
+    | 5   | cabin            | isolated, htc, chiller          |
+    | 6   | ptc              | off, allowed                    |
+    | 7   | compressor_power | off, 10 levels                  |
+
+    The levels of the compressor run evenly in the logarithm from its lowest to its full power. With
+    `continuous=True` the space is a `Box` in [-1, 1] with the same rows: options are equal parts of the
+    range, the compressor is off below -0.9. Other rows of the actuator table (`hp_gym.command.ACTUATORS`:
+    shares of recirculated air, blower, coolant flows, requested heat flows, valves, set point of the PTC) can
+    be added by name; as levels they have 11. A row that the agent does not control does what scenario and
+    rule-based controller give it.
+
+    `action_masks()` marks the options that the plant would grant in the coming second, flat, as MaskablePPO
+    of sb3-contrib expects.
+
+    ## Observation Space
+
+    A `Box` in [-1, 1] of float32. Low is shown as -1, high as 1; values beyond are held there.
+
+    | Num | Observation                     | Unit | Low     | High   |
+    |-----|---------------------------------|------|---------|--------|
+    | 0   | time_s                          | s    | 0       | 3600   |
+    | 1   | speed_m_s                       | m/s  | 0       | 40     |
+    | 2   | traction_power_w                | W    | -100000 | 100000 |
+    | 3   | ambient_temperature_degc        | degC | -40     | 50     |
+    | 4   | cabin_temperature_degc          | degC | -40     | 80     |
+    | 5   | battery_temperature_degc        | degC | -40     | 60     |
+    | 6   | motor_temperature_degc          | degC | -40     | 120    |
+    | 7   | transmission_temperature_degc   | degC | -40     | 120    |
+    | 8   | thermal_battery_temperature_degc | degC | -40    | 100    |
+    | 9   | htc_supply_temperature_degc     | degC | -40     | 100    |
+    | 10  | htc_return_temperature_degc     | degC | -40     | 100    |
+    | 11  | chiller_supply_temperature_degc | degC | -40     | 60     |
+    | 12  | chiller_return_temperature_degc | degC | -40     | 60     |
+    | 13  | htc_flow_kg_s                   | kg/s | 0       | 0.5    |
+    | 14  | chiller_flow_kg_s               | kg/s | 0       | 0.5    |
+    | 15  | condensing_pressure_bar         | bar  | 0       | 32     |
+    | 16  | evaporating_pressure_bar        | bar  | 0       | 10     |
+    | 17  | discharge_temperature_degc      | degC | -40     | 140    |
+    | 18  | compressor_speed_rev_s          | rev/s | 0      | 150    |
+    | 19  | soc                             | -    | 0       | 1      |
+    | 20  | battery_charge_limit_w          | W    | 0       | 150000 |
+    | 21  | battery_discharge_limit_w       | W    | 0       | 250000 |
+    | 22  | battery_power_w                 | W    | -100000 | 100000 |
+    | 23  | compressor_power_w              | W    | 0       | 5000   |
+    | 24  | ptc_power_w                     | W    | 0       | 6000   |
+    | 25  | auxiliary_power_w               | W    | 0       | 1500   |
+    | 26  | condenser_heat_flow_w           | W    | 0       | 15000  |
+    | 27  | evaporator_heat_flow_w          | W    | 0       | 15000  |
+    | 28  | cabin_htc_heat_flow_w           | W    | -10000  | 10000  |
+    | 29  | cabin_chiller_heat_flow_w       | W    | -10000  | 10000  |
+    | 30  | battery_htc_heat_flow_w         | W    | -10000  | 10000  |
+    | 31  | battery_chiller_heat_flow_w     | W    | -10000  | 10000  |
+    | 32  | ambient_htc_heat_flow_w         | W    | -15000  | 15000  |
+    | 33  | ambient_chiller_heat_flow_w     | W    | -15000  | 15000  |
+    | 34  | motor_chiller_heat_flow_w       | W    | -10000  | 10000  |
+    | 35  | transmission_chiller_heat_flow_w | W   | -10000  | 10000  |
+    | 36  | solar_gain_w                    | W    | 0       | 1500   |
+    | 37  | occupants                       | -    | 0       | 5      |
+    | 38  | cabin_on_htc                    | -    | 0       | 1      |
+    | 39  | battery_on_htc                  | -    | 0       | 1      |
+    | 40  | ambient_on_htc                  | -    | 0       | 1      |
+    | 41  | motor_on_chiller                | -    | 0       | 1      |
+    | 42  | transmission_on_chiller         | -    | 0       | 1      |
+    | 43  | battery_on_chiller              | -    | 0       | 1      |
+    | 44  | ambient_on_chiller              | -    | 0       | 1      |
+    | 45  | cabin_on_chiller                | -    | 0       | 1      |
+    | 46  | thermal_battery_on_htc          | -    | 0       | 1      |
+    | 47  | thermal_battery_on_chiller      | -    | 0       | 1      |
+    | 48  | previous_battery                | -    | -1      | 1      |
+    | 49  | previous_motor                  | -    | -1      | 1      |
+    | 50  | previous_transmission           | -    | -1      | 1      |
+    | 51  | previous_ambient                | -    | -1      | 1      |
+    | 52  | previous_thermal_battery        | -    | -1      | 1      |
+    | 53  | previous_cabin                  | -    | -1      | 1      |
+    | 54  | previous_ptc                    | -    | -1      | 1      |
+    | 55  | previous_compressor_power       | -    | -1      | 1      |
+
+    This is what a car without navigation can know. Further rows by name: `preview` (the speed 2 to 80 s
+    ahead), `time_left_s`, and every other signal of the plant (`hp_gym._core.observation_table()`).
+
+    ## Rewards
+
+    In points, four parts that `info` tells apart; each is the same expression as the KPI of a benchmark:
+
+    - `reward_energy`: minus 10 points for a kWh of attributable energy, the chemical energy drawn from the
+      cells minus that of a reference trip (the same cycle with battery, motor and oil at 25 degC, without
+      heating and cooling). Losses and lost recuperation of a cold battery count; the reference never depends
+      on the agent.
+    - `reward_discomfort`: minus 5 points for an hour at 1 K between cabin and 22 degC while somebody is in
+      the car. There is no dead band.
+    - `reward_heat_left`: at arrival, a credit for the heat stored since the start in cabin, battery (up to 20
+      degC), coolant loops and thermal battery. 0 by default. In a climate hotter than 22 degC it is the heat
+      that is gone from cabin, loops and thermal battery.
+    - `reward_penalties`: 500 points for a trip that ends before arrival; optional prices for a battery
+      outside its window and for stops of the compressor that a protection forced.
+
+    `reward` chooses among `balanced`, `energy`, `comfort`, `stored-heat` and `durable`, a file, or single
+    weights (`{"base": "balanced", "discomfort_per_k_h": 8.0}`).
+
+    ## Starting State
+
+    A car parked for long, everything at the same temperature except where the scenario says otherwise. Trips
+    come from a scenario (always the same) or are drawn from a distribution: `train-v1` (-20 to 40 degC, city,
+    mixed and motorway cycles, whole or in parts) by default, `test-v0` (other cycles, other climates) for a
+    held-out test.
+
+    ## Episode End
+
+    1. Termination: arrival at the end of the cycle, with the credit for heat left. `info["end_reason"]` is
+       `arrived`, `info["kpis"]` holds the KPIs of the trip.
+    2. Termination: `unserved_energy`, the battery could not deliver what driving needed.
+    3. Termination: `battery_empty`.
+
+    The environment itself never truncates; `max_episode_steps` of `gymnasium.make` does.
+
+    ## Arguments
+
+    ```python
+    import gymnasium as gym
+    import hp_gym
+
+    env = gym.make("EVHeatPump-v0", scenario="jeffs2019/case1-1")
+    ```
+
+    | Argument             | Default      | Meaning                                                          |
+    |----------------------|--------------|------------------------------------------------------------------|
+    | `render_mode`        | `None`       | `"rgb_array"` or `"human"`                                       |
+    | `scenario`           | `None`       | id or path of a scenario, always driven                          |
+    | `distribution`       | `"train-v1"` | name or path of a distribution that trips are drawn from         |
+    | `render_size`        | `(960, 540)` | width and height of the picture                                  |
+    | `vehicle`            | `None`       | name or path of a vehicle; that of the scenario by default       |
+    | `continuous`         | `False`      | `Box` instead of `MultiDiscrete`                                 |
+    | `actions`            | `"default"`  | `"default"`, `"hpcu"`, `"all"` or names of actuators             |
+    | `action_options`     | `None`       | options of choices by name, in an order of one's own             |
+    | `observations`       | `"default"`  | names of rows or groups (`"default"`, `"preview"`)               |
+    | `reward`             | `"balanced"` | name or path of a reward, or a mapping of weights                |
+    | `control_interval_s` | `1`          | seconds for which an action is held                              |
+    | `sensor_noise`       | `0.0`        | standard deviation on measured rows, in units of half the range  |
+    | `overrides`          | `None`       | single values of vehicle, controller and scenario to change      |
+
+    `reset(options={"scenario": ...})` and `reset(options={"distribution": ...})` choose another trip once.
+
+    ## Vectorized environment
+
+    `gymnasium.make_vec("EVHeatPump-v0", num_envs=64)` steps all environments in one call of native code on
+    several threads, with the same results as as many single environments with the same seeds. Its own
+    arguments are `autoreset_mode`, `threads` and `max_episode_steps`, and `scenario`, `distribution` and
+    `vehicle` may be lists.
+
+    Cars of different architectures share the rows of all of them, by name. Of what a car lacks, actions are
+    ignored (an option acts as the first of its row: isolated, closed, off) and masked but for the first
+    option of a row, and an observation reads as 0 in its own unit, held within its bounds, without noise.
+
+    ## Version History
+
+    * v0: Initial version
+    """
+
+    # Gymnasium declares it so.
+    metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 30}  # noqa: RUF012
+
+    def __init__(
+        self,
+        render_mode: str | None = None,
+        *,
+        scenario: Name | None = None,
+        distribution: Name | None = None,
+        render_size: tuple[int, int] = (960, 540),
+        **chosen: Unpack[Keywords],
+    ) -> None:
+        """Makes an environment; see the class for the arguments.
+
+        Raises:
+            ConfigurationError: A name, key or value is not accepted; the message says what is.
+            TypeError: There is no such argument, or it is of a type that cannot be read.
+        """
+        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
+            allowed = ", ".join(self.metadata["render_modes"])
+            message = f"render_mode is {render_mode!r}, but must be None or one of {allowed}"
+            raise _core.ConfigurationError(message)
+        self.render_mode = render_mode
+        trips = settings.source(scenario, distribution)
+        if trips == (None, None):
+            trips = (None, settings.DEFAULT_DISTRIBUTION)
+        self._episode = _core.Episode(settings.to_json(**chosen), *trips)
+        self.option_names = settings.option_names(self._episode)
+        self.action_names = tuple(self.option_names)
+        self._seeded = False
+        self._render_size = render_size
+        self._renderer: Renderer | None = None
+        self._window: Window | None = None
+        self.action_space = settings.action_space(self._episode)
+        self.observation_space = settings.observation_space(self._episode)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Begins a trip.
+
+        Args:
+            seed: Starts the random numbers anew.
+            options: `scenario` or `distribution` of this trip only.
+
+        Raises:
+            ConfigurationError: There is no such option, scenario or distribution.
+        """
+        super().reset(seed=seed)
+        trips = settings.source(*settings.once(options))
+        if seed is not None:
+            self._episode.seed(settings.core_seed(seed))
+        elif not self._seeded:
+            self._episode.seed(int(self.np_random.integers(2**63)))
+        self._seeded = True
+        result = self._episode.reset(*trips)
+        if self.render_mode == "human":
+            self.render()
+        return result
+
+    def step(self, action: Action) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """Drives on for one control interval.
+
+        Raises:
+            ValueError: The action has the wrong shape or holds a value that is not allowed.
+            TypeError: The action is of the wrong type.
+            ResetNeeded: No trip has begun, or it has ended.
+        """
+        if self.render_mode != "human":
+            return self._episode.step(action)
+        result = self._episode.step(action)
+        self.render()
+        return result
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """Draws the plant as it is now; returns the picture if `render_mode` is `rgb_array`."""
+        if self.render_mode is None:
+            gym.logger.warn(
+                "render() was called without a render mode; choose one, "
+                'e.g. gym.make("EVHeatPump-v0", render_mode="rgb_array")'
+            )
+            return None
+        if self._renderer is None:
+            from hp_gym.pictures.rendering import Renderer
+
+            self._renderer = Renderer(*self._render_size)
+        picture = self._renderer.render(self.signals(), self._episode.speeds_m_s(), layout=self.layout())
+        if self.render_mode == "rgb_array":
+            return picture
+        if self._window is None:
+            from hp_gym.pictures.window import Window
+
+            self._window = Window()
+        self._window.show(picture)
+        return None
+
+    def close(self) -> None:
+        """Ends the environment; it cannot be used any more."""
+        self._episode.close()
+        if self._window is not None:
+            self._window.close()
+            self._window = None
+
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Marks the options that the plant would grant in the coming second, action by action.
+
+        Everything that is no connection is always granted. Where the agent also controls recirculation, a
+        connection of the cabin counts as granted if some share of it makes it so.
+        """
+        return self._episode.action_masks()
+
+    def rule_based_action(self) -> Action:
+        """Returns what the rule-based controller would do next; in `MultiDiscrete` the nearest levels.
+
+        Its memory moves on once a step, however often it is asked.
+        """
+        return self._episode.rule_based_action()
+
+    def layout(self) -> dict[str, Any]:
+        """Returns what the vehicle of the trip is made of: loops, members, branches, exchangers, columns."""
+        return self._episode.layout()
+
+    def signals(self) -> dict[str, float]:
+        """Returns the present value of every signal of the plant by name."""
+        return dict(zip(self._episode.signal_names(), self._episode.look().tolist(), strict=True))
+
+    def kpis(self) -> dict[str, float]:
+        """Returns the KPIs of the trip so far; the score is the sum of all rewards."""
+        return self._episode.kpis()
+
+    def summary(self) -> dict[str, float]:
+        """Returns the totals of the trip so far, those that `hp_gym.simulate` gives."""
+        return self._episode.summary()
+
+    def get_state(self) -> bytes:
+        """Returns everything that the future depends on: plant, controller, trip, random numbers."""
+        return self._episode.get_state()
+
+    def set_state(self, state: bytes) -> None:
+        """Goes on from where `get_state` was called, in this or another environment with the same settings.
+
+        Raises:
+            StateError: These are not bytes of such an environment; nothing has changed then.
+        """
+        self._episode.set_state(state)
+        self._seeded = True
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What a copy needs; it opens its own window."""
+        return {**self.__dict__, "_renderer": None, "_window": None}

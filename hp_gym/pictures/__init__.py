@@ -1,0 +1,1 @@
+"""Pictures: a run over time, and the plant at one moment."""

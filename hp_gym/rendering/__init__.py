@@ -1,5 +1,0 @@
-"""The picture of a vehicle's thermal plant at one moment, fast enough for video."""
-
-from hp_gym.rendering.renderer import Renderer
-
-__all__ = ["Renderer"]

@@ -1,0 +1,1 @@
+"""Studies with the plant and its controllers: benchmark, tuning, calibration, reproduction, speed."""

@@ -1,0 +1,158 @@
+"""A benchmark from controllers to results."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from threadpoolctl import threadpool_limits
+
+from hp_gym.agents.controllers import ControllerError
+from hp_gym.agents.controllers.learned import ABLATION
+from hp_gym.agents.controllers.rule_based import FILES
+from hp_gym.studies.benchmark import environment_facts, statistics, summary
+from hp_gym.studies.benchmark.drive import drive_all, trajectories
+from hp_gym.studies.benchmark.fronts import OFFSETS, settings
+from hp_gym.studies.benchmark.results import Benchmark
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+    from pathlib import Path
+
+    import pandas as pd
+
+    from hp_gym.agents.controllers import Controller
+    from hp_gym.studies.benchmark.drive import Progress, Task
+    from hp_gym.studies.benchmark.fronts import Setting
+    from hp_gym.studies.benchmark.grid import Grid
+
+RESAMPLES: Final = 2000
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a benchmark does.
+
+    Attributes:
+        grid: Trips.
+        controllers: Who drives them; the paper's HPCU must be among them.
+        command: What was asked for, in words of the command line.
+        seed: Seed of the resamples (that of the controller `random` is its own).
+        resamples: How many.
+    """
+
+    grid: Grid
+    controllers: Sequence[Controller]
+    command: str
+    seed: int = 0
+    resamples: int = RESAMPLES
+
+
+def run(
+    plan: Plan, folder: Path, begin: Callable[[int], Progress] = lambda _: lambda _: None
+) -> tuple[Benchmark, pd.DataFrame]:
+    """Drives all controllers over all trips, and the rules with other set points over the headline's.
+
+    Args:
+        plan: What to do.
+        folder: Where `scenarios/` and `controllers/` are written.
+        begin: Told of the number of trips; returns what is told of those that have ended.
+
+    Returns:
+        The results, and the runs of the rules with other set points, one row each.
+
+    Raises:
+        ControllerError: Two controllers have the same name and seed, the paper's HPCU is missing, an
+            environment cannot be made, or actions do not fit.
+        OSError: The folder cannot be written to.
+    """
+    import pandas as pd
+
+    _check(plan.controllers)
+    grid = plan.grid
+    files = grid.write(folder / "scenarios")
+    names = {controller.name for controller in plan.controllers}
+    rivals = [
+        setting
+        for front in grid.fronts
+        if front.family in names
+        for setting in settings(front, folder / "controllers")
+    ]
+    heating = [scenario for scenario in grid.scenarios if scenario.band.headline]
+    tasks: list[Task] = [(controller, grid.scenarios) for controller in plan.controllers]
+    tasks += [(setting.controller, heating) for setting in rivals]
+    progress = begin(sum(len(scenarios) for _, scenarios in tasks))
+    # Controllers already share the cores; threads of a linear algebra library would only wait for each other,
+    # and its sums would depend on their number.
+    with threadpool_limits(1):
+        rows = drive_all(tasks, files, progress)
+        shown = _trajectories(plan, files)
+    runs = pd.DataFrame([row for driven in rows[: len(plan.controllers)] for row in driven])
+    front_runs = _front_runs(rivals, rows[len(plan.controllers) :])
+    resamples = statistics.resample(
+        [scenario.ambient_temperature_degc for scenario in grid.scenarios], plan.resamples, plan.seed
+    )
+    evidence = summary.Evidence(grid, runs, front_runs, resamples)
+    fronts = summary.front_table(evidence)
+    learned = list(dict.fromkeys(each.name for each in plan.controllers if each.learned))
+    ablations = [name for name in learned if name.startswith(ABLATION)]
+    ablation_gains = summary.all_gains(evidence, ablations) or None
+    found = _summary(plan, evidence, [name for name in learned if name not in ablations], ablation_gains)
+    return Benchmark(runs, fronts, found, shown, ablation_gains), front_runs
+
+
+def _summary(
+    plan: Plan, evidence: summary.Evidence, learned: Sequence[str], ablations: dict[str, Any] | None
+) -> dict[str, Any]:
+    return {
+        "gains": summary.all_gains(evidence, learned),
+        "limit_breaches": summary.counts(evidence.runs, "limit_breaches"),
+        "stranded_trips": summary.counts(evidence.runs, "stranded"),
+        "controllers": summary.controllers(evidence),
+        "ablations": ablations,
+        "grid": summary.grid_facts(plan.grid),
+        "bootstrap": {"resamples": plan.resamples, "seed": plan.seed, "strata": "ambient temperature"},
+        "command": plan.command,
+        "versions": environment_facts.versions(),
+        "hardware": environment_facts.hardware(),
+    }
+
+
+def _check(controllers: Iterable[Controller]) -> None:
+    seen = set()
+    for controller in controllers:
+        key = (controller.name, controller.seed)
+        if key in seen:
+            raise ControllerError(f"controller `{controller.name}` is there twice")
+        seen.add(key)
+    if all(name != summary.PAPER for name, _ in seen):
+        raise ControllerError(f"`{summary.PAPER}` must be among the controllers: others are compared with it")
+
+
+def _front_runs(rivals: Sequence[Setting], rows: Sequence[Sequence[dict[str, Any]]]) -> pd.DataFrame:
+    import pandas as pd
+
+    told = [
+        {**setting.columns(), **row} for setting, driven in zip(rivals, rows, strict=True) for row in driven
+    ]
+    return pd.DataFrame(told) if told else pd.DataFrame(columns=["family", *OFFSETS])
+
+
+def _trajectories(plan: Plan, files: dict[str, Path]) -> dict[str, dict[str, pd.DataFrame]]:
+    shown: dict[str, dict[str, pd.DataFrame]] = {name: {} for name in plan.grid.shown}
+    scenarios = [scenario for scenario in plan.grid.scenarios if scenario.name in shown]
+    # Of several training seeds the lowest is shown.
+    for controller in sorted(plan.controllers, key=lambda each: each.seed):
+        if controller.name in next(iter(shown.values()), {}) or controller.name.startswith(ABLATION):
+            continue
+        for name, table in trajectories(controller, scenarios, files).items():
+            shown[name][controller.name] = table
+    order = list(dict.fromkeys(controller.name for controller in plan.controllers))
+    return {name: {each: told[each] for each in order if each in told} for name, told in shown.items()}
+
+
+def needed_rules(names: Iterable[str], available: Iterable[str]) -> list[str]:
+    """Names of controllers with the rules put first that others are compared with, where there are such."""
+    given = list(names)
+    compared = [summary.PAPER, *(name for name in FILES[-1:] if name in available)]
+    return [*(name for name in compared if name not in given), *given]

@@ -1,0 +1,82 @@
+"""KPIs of one trip."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from hp_gym.studies.benchmark.results import IDENTITY, KPIS
+
+if TYPE_CHECKING:
+    from hp_gym.agents.controllers import Controller
+    from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
+    from hp_gym.studies.benchmark.grid import Scenario
+
+ARRIVED: Final = "arrived"
+
+# Taken as they are from the totals of a trip.
+_TOTALS: Final = (
+    "duration_s",
+    "distance_km",
+    "energy_kwh",
+    "compressor_energy_kwh",
+    "ptc_energy_kwh",
+    "blower_energy_kwh",
+    "fan_energy_kwh",
+    "final_soc_pct",
+    "time_to_comfort_s",
+    "compressor_starts",
+    "limit_breaches",
+)
+_REWARD_TERMS: Final = (
+    "attributable_energy_kwh",
+    "discomfort_k",
+    "heat_left_kwh",
+    "chemical_energy_kwh",
+    "reference_energy_kwh",
+    "battery_window_k_h",
+    "protection_trips",
+)
+
+
+def measure(
+    controller: Controller, scenario: Scenario, env: EVHeatPumpVectorEnv, index: int, end_reason: str
+) -> dict[str, Any]:
+    """Returns the KPIs of a trip that has just ended.
+
+    Args:
+        controller: Who drove.
+        scenario: What was driven.
+        env: Where.
+        index: Place of the trip in it.
+        end_reason: Why it ended.
+    """
+    terms, totals = env.kpis(index), env.summary(index)
+    distance_km = totals["distance_km"]
+    charge_used_pct = scenario.variant.state_of_charge_pct - totals["final_charge_soc_pct"]
+    values = {name: terms[name] for name in _REWARD_TERMS} | {name: totals[name] for name in _TOTALS}
+    values |= {
+        "attributable_energy_kwh_per_100_km": _quotient(
+            100.0 * terms["attributable_energy_kwh"], distance_km
+        ),
+        "pump_energy_kwh": totals["htc_pump_energy_kwh"] + totals["chiller_pump_energy_kwh"],
+        # A full battery at this trip's consumption of charge.
+        "range_km": _quotient(100.0 * distance_km, charge_used_pct),
+        "comfortable_share_pct": 100.0 * totals["comfortable_share"],
+        "stranded": 0.0 if end_reason == ARRIVED else 1.0,
+    }
+    identity = {
+        "controller": controller.name,
+        "seed": controller.seed,
+        "scenario": scenario.name,
+        "variant": scenario.variant.name,
+        "cycle": scenario.cycle.name,
+        "ambient_temperature_degc": scenario.ambient_temperature_degc,
+        "band": scenario.band.name,
+        "end_reason": end_reason,
+    }
+    return {name: identity[name] for name in IDENTITY} | {name: values[name] for name in KPIS}
+
+
+def _quotient(value: float, divisor: float) -> float:
+    """What does not exist, for a trip of 0 km or one that used no charge, is NaN."""
+    return value / divisor if divisor else float("nan")

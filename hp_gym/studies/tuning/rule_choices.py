@@ -1,0 +1,64 @@
+"""A rule-based controller as choices band by band, and its file."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import tomlkit
+
+from hp_gym.files import atomic_write
+from hp_gym.overrides import Value
+from hp_gym.studies.tuning.ambient_bands import Band
+
+Choices = Mapping[str, Value]
+"""Dotted keys below `strategy.` and `controller.` with their values."""
+
+PAPER: Final[Choices] = {
+    "strategy.battery": "heat",
+    "strategy.ptc": True,
+    "strategy.ambient": True,
+    "strategy.motor": True,
+    "strategy.transmission": True,
+    "controller.cabin_set_point_degc": 22.0,
+    "controller.htc_set_point_degc": 90.0,
+    "controller.battery.heat_up_to_degc": 20.0,
+    "controller.ptc_from_deviation_k": -20.0,
+}
+"""What Jeffs et al. 2019 choose: all sources, battery heated, PTC whenever it may (sections 2.2 to 2.4)."""
+
+
+def to_toml(description: str, bands: Sequence[tuple[Band, Choices]]) -> str:
+    """Returns the controller file of choices for each band, cold to hot."""
+    document = tomlkit.document()
+    for line in description.splitlines():
+        document.add(tomlkit.comment(line))
+    document["base"] = "hpcu"
+    rows = tomlkit.aot()
+    for index, (band, choices) in enumerate(bands):
+        row = tomlkit.table()
+        # Rules must not end where the training trips do.
+        last = index == len(bands) - 1
+        row["up_to_degc"] = 100.0 if last else float(band.high_degc)
+        for key, value in choices.items():
+            _place(row, key.split("."), value)
+        rows.append(row)
+    document["ambient_bands"] = rows
+    return tomlkit.dumps(document)
+
+
+def write(path: Path, description: str, bands: Sequence[tuple[Band, Choices]]) -> None:
+    """Writes a controller file whole or not at all, but not past a power cut.
+
+    Raises:
+        OSError: The folder cannot be written to.
+    """
+    with atomic_write(path, durable=False) as temporary:
+        temporary.write_text(to_toml(description, bands), encoding="utf-8")
+
+
+def _place(table: Any, steps: list[str], value: Value) -> None:
+    for step in steps[:-1]:
+        if step not in table:
+            table[step] = tomlkit.table()
+        table = table[step]
+    table[steps[-1]] = round(value, 3) if isinstance(value, float) else value

@@ -1,3 +1,0 @@
-//! The plant's own switches.
-
-pub mod thermal_switch;

@@ -1,0 +1,162 @@
+//! A vehicle's shape as a step sees it: positions and network, compiled or planned.
+
+use super::conditions::{Conditions, Constants};
+use super::planned::PlannedWiring;
+use super::{Forecast, INLET_PLACES};
+use crate::architecture::indices::{
+    BranchIndices, ExchangerIndices, FrontEndIndices, HeaterIndices, Indices, LoopIndices, OwnedIndices,
+};
+use crate::architecture::layout::CabinLayout;
+use crate::architecture::wiring::{Inlet, Link};
+use crate::flows::{Flow, Flows};
+use crate::numerics::thermal_network::NodeValues;
+
+/// What a step is given.
+#[derive(Debug, Clone, Copy)]
+pub struct Given<'a> {
+    /// Heat capacities of the nodes [J/K].
+    pub capacities_j_k: &'a NodeValues,
+    /// What links depend on at all times.
+    pub constants: &'a Constants,
+    /// What they depend on now.
+    pub now: &'a Conditions<'a>,
+    /// Temperatures at the beginning [K].
+    pub start_k: &'a NodeValues,
+}
+
+/// Where a step looks things up. Both kinds do the same operations in the same order, so they agree to the last bit.
+pub trait Shape {
+    /// Whether it is known while compiling.
+    const COMPILED: bool;
+
+    /// A factorised step.
+    type Factors;
+
+    /// Positions: constants, or those of the vehicle.
+    fn indices(own: &OwnedIndices) -> Indices<'_>;
+
+    /// Entry number `N` of [`Indices::loops`], if there is one.
+    fn circuit_at<const N: usize>(shape: &Indices<'_>) -> Option<LoopIndices>;
+
+    /// Entry number `N` of [`Indices::branches`], if there is one.
+    fn branch_at<const N: usize>(shape: &Indices<'_>) -> Option<BranchIndices>;
+
+    /// Entry number `N` of [`Indices::cabins`], if there is one.
+    fn cabin_at<const N: usize>(shape: &Indices<'_>) -> Option<CabinLayout>;
+
+    /// Entry number `N` of [`Indices::front_ends`], if there is one.
+    fn front_end_at<const N: usize>(shape: &Indices<'_>) -> Option<FrontEndIndices>;
+
+    /// Entry number `N` of [`Indices::exchangers`], if there is one.
+    fn exchanger_at<const N: usize>(shape: &Indices<'_>) -> Option<ExchangerIndices>;
+
+    /// Entry number `N` of [`Indices::heaters`], if there is one.
+    fn heater_at<const N: usize>(shape: &Indices<'_>) -> Option<HeaterIndices>;
+
+    /// Entry number `N` of [`Indices::base_loads`], if there is one.
+    fn base_load_at<const N: usize>(shape: &Indices<'_>) -> Option<Flow>;
+
+    /// Assembles and factorises a step; tells what is known of the supplies that heat enters.
+    fn begin(
+        planned: Option<&PlannedWiring>,
+        given: &Given<'_>,
+        step_s: f64,
+        flows: &Flows,
+    ) -> ([Forecast; INLET_PLACES], Self::Factors);
+
+    /// Temperatures at the end of the step [K]; enters the heat flows of all links.
+    fn finish(
+        planned: Option<&PlannedWiring>,
+        factors: &Self::Factors,
+        given: &Given<'_>,
+        flows: &mut Flows,
+    ) -> NodeValues;
+}
+
+/// Does something for each entry of a list of a shape, for a compiled one written out for each position, so that it knows its
+/// entry while compiling: `each!(S::loops(shape) => |place, indices| { ... })`.
+macro_rules! each {
+    ($s:ident::loops($shape:expr) => |$place:pat_param, $entry:pat_param| $body:block) => {
+        each!(@ $s, $shape.loops, $s::circuit_at($shape) => |$place, $entry| $body; 0 1 2 3)
+    };
+    ($s:ident::branches($shape:expr) => |$place:pat_param, $entry:pat_param| $body:block) => {
+        each!(@ $s, $shape.branches, $s::branch_at($shape) => |$place, $entry| $body; 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15)
+    };
+    ($s:ident::cabins($shape:expr) => |$place:pat_param, $entry:pat_param| $body:block) => {
+        each!(@ $s, $shape.cabins, $s::cabin_at($shape) => |$place, $entry| $body; 0 1)
+    };
+    ($s:ident::front_ends($shape:expr) => |$place:pat_param, $entry:pat_param| $body:block) => {
+        each!(@ $s, $shape.front_ends, $s::front_end_at($shape) => |$place, $entry| $body; 0 1 2)
+    };
+    ($s:ident::exchangers($shape:expr) => |$place:pat_param, $entry:pat_param| $body:block) => {
+        each!(@ $s, $shape.exchangers, $s::exchanger_at($shape) => |$place, $entry| $body; 0 1 2 3 4 5)
+    };
+    ($s:ident::heaters($shape:expr) => |$place:pat_param, $entry:pat_param| $body:block) => {
+        each!(@ $s, $shape.heaters, $s::heater_at($shape) => |$place, $entry| $body; 0 1 2 3)
+    };
+    ($s:ident::base_loads($shape:expr) => |$place:pat_param, $entry:pat_param| $body:block) => {
+        each!(@ $s, $shape.base_loads, $s::base_load_at($shape) => |$place, $entry| $body; 0 1 2 3 4 5 6 7)
+    };
+    (@ $t:ident, $list:expr, $s:ident::$at:ident($shape:expr) => |$place:pat_param, $entry:pat_param| $body:block;
+        $($n:literal)*) => {
+        if $t::COMPILED {
+            $(
+                if let Some($entry) = &$s::$at::<$n>($shape) {
+                    let $place: usize = $n;
+                    $body
+                }
+            )*
+        } else {
+            for ($place, $entry) in $list.iter().enumerate() {
+                $body
+            }
+        }
+    };
+}
+pub(crate) use each;
+
+/// Brings heat that enters a loop where it ends up: in its supply and, in part, in the series behind the exchanger.
+///
+/// A branch in series sees coolant that is warmer by `Q / C`; that part of its link is a fixed flow, entered here.
+#[inline(always)]
+pub(super) fn bring(inlet: &Inlet, heat_w: f64, now: &Conditions<'_>, sources_w: &mut NodeValues) {
+    let mut left = 1.0;
+    for place in inlet.series.iter().flatten() {
+        let share =
+            left * (now.branches_w_k[usize::from(place.branch)] / now.rates_w_k[usize::from(inlet.circuit)]);
+        sources_w[place.node.index()] += heat_w * share;
+        left -= share;
+    }
+    sources_w[inlet.supply.index()] += heat_w * left;
+}
+
+/// Takes the same part from the flows of the branches in series.
+#[inline(always)]
+pub(super) fn settle(inlet: &Inlet, heat_w: f64, now: &Conditions<'_>, flows: &mut Flows) {
+    let mut left = 1.0;
+    for place in inlet.series.iter().flatten() {
+        let share =
+            left * (now.branches_w_k[usize::from(place.branch)] / now.rates_w_k[usize::from(inlet.circuit)]);
+        let given_w = heat_w * share;
+        flows[place.flow] += if place.out_of_loop { given_w } else { -given_w };
+        left -= share;
+    }
+}
+
+/// Heat of an inlet's flow, positive into the loop [W].
+#[inline(always)]
+pub(super) fn entering_w(inlet: &Inlet, flows: &Flows) -> f64 {
+    if inlet.out { -flows[inlet.flow] } else { flows[inlet.flow] }
+}
+
+/// Whether no link before carries the same flow.
+pub(super) const fn is_first(links: &[Link], place: usize) -> bool {
+    let mut before = 0;
+    while before < place && place < links.len() {
+        if links[before].flow.0 == links[place].flow.0 {
+            return false;
+        }
+        before += 1;
+    }
+    true
+}

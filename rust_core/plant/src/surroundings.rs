@@ -1,0 +1,29 @@
+//! What the surroundings do during a step.
+
+use crate::media::air::AirProperties;
+
+/// Period of all controllers and of a plant step [s].
+pub const CONTROL_PERIOD_S: f64 = 1.0;
+
+/// What the surroundings do during a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disturbance {
+    /// Vehicle speed at the beginning [m/s].
+    pub start_speed_m_s: f64,
+    /// Vehicle speed at the end [m/s].
+    pub end_speed_m_s: f64,
+    /// Ambient air.
+    pub air: AirProperties,
+    /// Solar heat into the cabin [W].
+    pub solar_gain_w: f64,
+    /// People in the cabin.
+    pub occupants: f64,
+}
+
+impl Disturbance {
+    /// Mean vehicle speed [m/s].
+    #[must_use]
+    pub fn mean_speed_m_s(&self) -> f64 {
+        0.5 * (self.start_speed_m_s + self.end_speed_m_s)
+    }
+}

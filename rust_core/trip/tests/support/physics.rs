@@ -1,0 +1,290 @@
+//! What no step of any vehicle may break, worked out again from states, flows and parameters.
+
+use super::{Step, TOLERANCE};
+use hp_plant::architecture::declaration::Level;
+use hp_plant::architecture::layout::{BranchSide, ExchangerSide};
+use hp_plant::circuits::refrigeration_cycle::RefrigerationCycle;
+use hp_plant::components::cabin::Ventilation;
+use hp_plant::components::heat_exchanger::inlet_conductance_w_k;
+use hp_plant::components::refrigerant_exchanger::{CondenserStreams, EvaporatorStreams};
+use hp_plant::numerics::thermal_network::Node;
+
+/// Rounding of heat flows that are worked out in another order [W].
+const ROUNDING_W: f64 = 1e-6;
+
+/// Everything that must hold in a step of any vehicle.
+pub fn check(step: &Step<'_>) {
+    let entry = step.record.ledger;
+    assert!(entry.relative() < TOLERANCE, "at {} s: {entry:?}", step.after.time_s);
+    check_finite(step);
+    check_branches(step);
+    check_limits(step);
+    check_exchangers(step);
+    check_supply_air(step);
+}
+
+fn check_finite(step: &Step<'_>) {
+    let layout = step.plant.layout();
+    for (node, row) in layout.nodes.iter().enumerate() {
+        let value_k = step.after.temperatures_k[node];
+        assert!((200.0..450.0).contains(&value_k), "{} at {value_k} K", row.stem);
+    }
+    for row in &layout.flows {
+        assert!(step.record.flows[row.flow].is_finite(), "{}", row.column);
+    }
+    let view = hp_plant::signals::View {
+        plant: step.plant,
+        state: step.after,
+        record: Some(step.record),
+        disturbance: step.disturbance,
+    };
+    for signal in step.plant.signals.rows() {
+        assert!(signal.reader.read(&view).is_finite(), "{}", signal.name);
+    }
+}
+
+/// Limits of pressure and supplies while the heat pump runs, COP below Carnot.
+fn check_limits(step: &Step<'_>) {
+    let (vehicle, result) = (&step.plant.vehicle, &step.record.refrigeration);
+    let Some(refrigeration) = vehicle.refrigeration.as_ref().filter(|_| result.running()) else {
+        assert_eq!((result.condenser_heat_flow_w, result.evaporator_heat_flow_w), (0.0, 0.0));
+        return;
+    };
+    assert!(result.condensing_pressure_pa <= (refrigeration.maximum_pressure_bar + 0.05) * 1e5);
+    for (circuit, parameters) in vehicle.layout.loops.iter().zip(&vehicle.loops) {
+        let Some(exchanger) = circuit.exchanger else { continue };
+        let supply_k = |state: &hp_plant::state::State| state.temperatures_k[circuit.supply.index()];
+        let (before_k, after_k) = (supply_k(step.before), supply_k(step.after));
+        let name = &circuit.name;
+        match vehicle.layout.exchangers[exchanger].level {
+            Level::Condensing => {
+                let highest_k = parameters.maximum_supply_degc.expect("checked when loaded").kelvin();
+                assert!(after_k <= (highest_k + 0.1).max(before_k), "{name} at {after_k} K");
+            }
+            Level::Evaporating => {
+                let lowest_k = parameters.minimum_supply_degc.expect("checked when loaded").kelvin();
+                assert!(after_k >= (lowest_k - 0.1).min(before_k), "{name} at {after_k} K");
+            }
+        }
+    }
+    let lift_k = result.condensing_temperature_k - result.evaporating_temperature_k;
+    let carnot = result.condensing_temperature_k / lift_k;
+    assert!(result.condenser_heat_flow_w < carnot * result.electric_power_w, "COP above Carnot: {result:?}");
+}
+
+/// Air of a cabin during a step, and the temperature at which it reaches the cores [K].
+pub fn cabin_air(step: &Step<'_>, cabin: usize, state: &hp_plant::state::State) -> (Ventilation, f64) {
+    let (layout, share) = (&step.plant.vehicle.layout.cabins[cabin], &step.plant.vehicle.cabins[cabin]);
+    let demand = step.plant.ranges.decode(step.command);
+    let occupants = step.disturbance.occupants * share.occupant_share;
+    let (level, recirculation) = (demand[layout.blower_row], demand[layout.recirculation_row]);
+    let air = share.parameters.ventilation(level, recirculation, occupants);
+    let (fresh, recirculated) = (1.0 - air.recirculation, air.recirculation);
+    let cabin_k = state.temperatures_k[layout.air.index()];
+    (air, fresh * step.disturbance.air.temperature_k + recirculated * cabin_k)
+}
+
+/// Air at a front-end exchanger: ambient, and what the exchangers before it gave off in the second before [K].
+pub fn front_end_air_k(step: &Step<'_>, front_end: usize) -> f64 {
+    let vehicle = &step.plant.vehicle;
+    let mut air_k = step.disturbance.air.temperature_k;
+    if let Some(stream) = &vehicle.air_streams[front_end] {
+        let speed_m_s = step.disturbance.mean_speed_m_s();
+        let rate_w_k = stream.capacity_rate_w_k + stream.capacity_rate_per_speed_w_s_k_m * speed_m_s;
+        let mut before = vehicle.layout.front_ends[front_end].behind;
+        while let Some(other) = before {
+            air_k += step.before.front_end_w[other] / rate_w_k;
+            before = vehicle.layout.front_ends[other].behind;
+        }
+    }
+    air_k
+}
+
+/// No branch carries heat from cold to hot, by the temperatures at the end of the step.
+fn check_branches(step: &Step<'_>) {
+    let layout = step.plant.layout();
+    let end_k = |node: Node| step.after.temperatures_k[node.index()];
+    for branch in layout.branches.iter().filter(|branch| !branch.series) {
+        let supply_k = end_k(layout.loops[branch.circuit].supply);
+        let other_k = match branch.side {
+            BranchSide::Mass(node) => end_k(node),
+            BranchSide::Ambient(front_end) => front_end_air_k(step, front_end),
+            BranchSide::Core(cabin) => cabin_air(step, cabin, step.after).1,
+            BranchSide::Plate(from) => end_k(layout.loops[from].back),
+        };
+        let difference_k = if branch.out_of_loop { supply_k - other_k } else { other_k - supply_k };
+        let heat_w = step.record.flows[branch.flow];
+        let member = &layout.members[branch.member].name;
+        // With several sub-steps flows are means, so their sign is that of one sub-step only where there is one.
+        assert!(
+            heat_w * difference_k >= -1e-9 * (1.0 + heat_w.abs()),
+            "{heat_w} W over {difference_k} K at {member} in {}",
+            layout.loops[branch.circuit].name
+        );
+    }
+}
+
+/// Air behind the coolant core of a cabin at the beginning of a step [K]: the core's conductance follows from its heat and the
+/// temperatures at the end.
+fn behind_core_k(step: &Step<'_>, cabin: usize, rate_w_k: f64, inlet_k: f64) -> f64 {
+    let layout = step.plant.layout();
+    let own = &layout.cabins[cabin];
+    [own.heater, own.cooler].into_iter().flatten().fold(inlet_k, |air_k, core| {
+        let branch = &layout.branches[core];
+        let supply = layout.loops[branch.circuit].supply.index();
+        let heat_w = step.record.flows[branch.flow];
+        if heat_w == 0.0 {
+            return air_k;
+        }
+        let end_k = step.after.temperatures_k[supply] - cabin_air(step, cabin, step.after).1;
+        let conductance_w_k = heat_w.abs() / end_k.abs();
+        air_k + conductance_w_k / rate_w_k * (step.before.temperatures_k[supply] - inlet_k)
+    })
+}
+
+/// What heats the supply air of a cabin, core and condenser, leaves it no warmer than the hotter of both; the same the other
+/// way round for what cools it.
+fn check_supply_air(step: &Step<'_>) {
+    let layout = step.plant.layout();
+    let result = &step.record.refrigeration;
+    for (place, cabin) in layout.cabins.iter().enumerate() {
+        for (level, core) in [(Level::Condensing, cabin.heater), (Level::Evaporating, cabin.cooler)] {
+            let own =
+                layout.exchangers.iter().find(|e| e.level == level && e.side == ExchangerSide::Cabin(place));
+            let (Some(exchanger), Some(core)) = (own, core) else { continue };
+            let branch = &layout.branches[core];
+            let heats_w = (step.record.flows[exchanger.flow], step.record.flows[branch.flow]);
+            if heats_w.0 <= 0.0 || heats_w.1 <= 0.0 {
+                continue;
+            }
+            let (air, inlet_k) = cabin_air(step, place, step.before);
+            let change_k = (heats_w.0 + heats_w.1) / air.supply_rate_w_k;
+            let supply = layout.loops[branch.circuit].supply.index();
+            let supplies_k = [step.before.temperatures_k[supply], step.after.temperatures_k[supply]];
+            // A step's core heat is that of its end, the air that the exchanger meets that of its beginning.
+            let room_k = match level {
+                Level::Condensing => {
+                    supplies_k[0].max(supplies_k[1]).max(result.condensing_temperature_k)
+                        - (inlet_k + change_k)
+                }
+                Level::Evaporating => {
+                    inlet_k
+                        - change_k
+                        - supplies_k[0].min(supplies_k[1]).min(result.evaporating_temperature_k)
+                }
+            };
+            assert!(room_k > -2.0, "supply air {room_k} K beyond what heats or cools it: {heats_w:?} W");
+        }
+    }
+}
+
+/// Coolant or air at an exchanger of the refrigerant loop: inlet [K], capacity rate and conductance [W/K].
+pub fn stream(step: &Step<'_>, place: usize) -> (f64, f64, f64) {
+    let vehicle = &step.plant.vehicle;
+    let exchanger = &vehicle.layout.exchangers[place];
+    let ua_w_k = vehicle.exchanger_ua_w_k[place];
+    match exchanger.side {
+        ExchangerSide::Loop(circuit) => {
+            let flow_kg_s = step.after.pumps[circuit].flow_kg_s;
+            let rate_w_k = flow_kg_s * vehicle.loops[circuit].circuit.coolant_specific_heat_j_kg_k;
+            let inlet_k = step.before.temperatures_k[vehicle.layout.loops[circuit].back.index()];
+            (inlet_k, rate_w_k, inlet_conductance_w_k(rate_w_k, ua_w_k))
+        }
+        ExchangerSide::Cabin(cabin) => {
+            let (air, inlet_k) = cabin_air(step, cabin, step.before);
+            let inlet_k = behind_core_k(step, cabin, air.supply_rate_w_k, inlet_k);
+            (inlet_k, air.supply_rate_w_k, inlet_conductance_w_k(air.supply_rate_w_k, ua_w_k))
+        }
+        ExchangerSide::FrontEnd(front_end) => {
+            let own = &vehicle.front_ends[front_end];
+            let speed_m_s = step.disturbance.mean_speed_m_s();
+            let ua_w_k = match exchanger.level {
+                Level::Condensing => own.radiator_ua_w_k + own.radiator_ua_per_speed_w_s_k_m * speed_m_s,
+                Level::Evaporating => own.source_ua_w_k + own.source_ua_per_speed_w_s_k_m * speed_m_s,
+            };
+            (front_end_air_k(step, front_end), f64::INFINITY, ua_w_k)
+        }
+    }
+}
+
+/// Each exchanger carries `G |T - inlet|` or nothing, never backwards, and no stream crosses in any of them.
+fn check_exchangers(step: &Step<'_>) {
+    let (Some(cycle), result) = (&step.plant.refrigeration, &step.record.refrigeration) else { return };
+    if !result.running() {
+        return;
+    }
+    let mut totals_w = [0.0; 2];
+    for (place, exchanger) in step.plant.layout().exchangers.iter().enumerate() {
+        let heat_w = step.record.flows[exchanger.flow];
+        let hot = exchanger.level == Level::Condensing;
+        totals_w[usize::from(!hot)] += heat_w;
+        assert!(heat_w >= 0.0, "{} runs backwards: {heat_w} W", exchanger.name);
+        if heat_w == 0.0 {
+            continue;
+        }
+        let (inlet_k, rate_w_k, conductance_w_k) = stream(step, place);
+        let room_k = if hot {
+            result.condensing_temperature_k - inlet_k
+        } else {
+            inlet_k - result.evaporating_temperature_k
+        };
+        let expected_w = conductance_w_k * room_k;
+        assert!(
+            (heat_w - expected_w).abs() < 0.1 + 1e-6 * expected_w,
+            "{}: {heat_w}, {expected_w}",
+            exchanger.name
+        );
+        let margins = margins_k(cycle, step, hot, (inlet_k, rate_w_k, heat_w));
+        assert!(margins.iter().all(|&margin| margin >= -1e-6), "{}: {margins:?} {result:?}", exchanger.name);
+        let open = exchanger.valve_row.is_none_or(|row| step.plant.ranges.decode(step.command)[row] == 1.0);
+        assert!(open, "{} is closed but carries {heat_w} W", exchanger.name);
+        if let (ExchangerSide::Cabin(cabin), false) = (exchanger.side, hot) {
+            let coldest_k = step.plant.vehicle.cabins[cabin].parameters.minimum_cooled_air_degc.kelvin();
+            assert!(inlet_k - heat_w / rate_w_k > coldest_k - 1e-3, "{} ices up", exchanger.name);
+        }
+    }
+    let expected = [result.condenser_heat_flow_w, result.evaporator_heat_flow_w];
+    for (sum_w, expected_w) in totals_w.into_iter().zip(expected) {
+        assert!((sum_w - expected_w).abs() < ROUNDING_W * (1.0 + expected_w), "{totals_w:?} {expected:?}");
+    }
+}
+
+/// Temperature differences along one exchanger, which gets the refrigerant in proportion to its heat.
+fn margins_k(
+    cycle: &RefrigerationCycle,
+    step: &Step<'_>,
+    hot: bool,
+    (coolant_inlet_k, capacity_rate_w_k, heat_w): (f64, f64, f64),
+) -> Vec<f64> {
+    let (result, table) = (&step.record.refrigeration, cycle.table());
+    let isobar = table.condensing_isobar(result.condensing_temperature_k);
+    let liquid_j_kg = isobar.liquid_enthalpy_j_kg(result.subcooling_k);
+    let suction = table.suction_state(result.evaporating_temperature_k, result.superheat_k);
+    let dew_j_kg = table.suction_state(result.evaporating_temperature_k, 0.0).enthalpy_j_kg;
+    if !hot {
+        let share = heat_w / result.evaporator_heat_flow_w * result.mass_flow_kg_s;
+        let streams = EvaporatorStreams {
+            coolant_inlet_k,
+            capacity_rate_w_k,
+            evaporating_k: result.evaporating_temperature_k,
+            superheat_k: result.superheat_k,
+            evaporation_w: share * (dew_j_kg - liquid_j_kg),
+            superheating_w: share * (suction.enthalpy_j_kg - dew_j_kg),
+        };
+        return streams.margins_k().to_vec();
+    }
+    let share = heat_w / result.condenser_heat_flow_w * result.mass_flow_kg_s;
+    let discharge_j_kg = liquid_j_kg + result.condenser_heat_flow_w / result.mass_flow_kg_s;
+    let bubble_j_kg = isobar.liquid_enthalpy_j_kg(0.0);
+    let streams = CondenserStreams {
+        coolant_inlet_k,
+        capacity_rate_w_k,
+        discharge_k: result.discharge_temperature_k,
+        condensing_k: result.condensing_temperature_k,
+        subcooling_k: result.subcooling_k,
+        desuperheating_w: share * (discharge_j_kg - isobar.dew_enthalpy_j_kg).max(0.0),
+        condensation_w: share * (discharge_j_kg.min(isobar.dew_enthalpy_j_kg) - bubble_j_kg),
+        subcooling_w: share * (bubble_j_kg - liquid_j_kg),
+    };
+    streams.margins_k().to_vec()
+}

@@ -1,0 +1,274 @@
+"""The single environment."""
+
+import copy
+import pickle
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from stable_baselines3.common.env_checker import check_env as check_env_of_sb3
+
+import hp_gym
+from hp_gym import _core
+from hp_gym.envs.hpcu_policy import HpcuPolicy
+from hp_gym.envs.wrappers import MODES, FlatActions
+
+MODES_OF_ACTION = [
+    {},
+    {"continuous": True},
+    {"actions": "hpcu"},
+    {"actions": "all", "continuous": True},
+    {"actions": ["compressor_power", "cabin"], "control_interval_s": 30},
+    {"observations": ["default", "preview", "time_left_s", "charge_soc"], "sensor_noise": 0.02},
+]
+PAPER = [f"jeffs2019/case1-{i}" for i in range(1, 6)] + [f"jeffs2019/case2-{i}" for i in range(1, 5)]
+HTC, CHILLER = 1, 2
+
+
+def make(**kwargs: Any) -> gym.Env[Any, Any]:
+    return gym.make("EVHeatPump-v0", disable_env_checker=True, **kwargs)
+
+
+def drive(
+    env: gym.Env[Any, Any], policy: Any, seed: int = 0
+) -> tuple[np.ndarray, list[float], dict[str, Any]]:
+    """Drives a trip to its end; returns all signals second by second, the rewards and the last info."""
+    observation, _ = env.reset(seed=seed)
+    inner: Any = env.unwrapped
+    rows, rewards = [list(inner.signals().values())], []
+    while True:
+        observation, reward, terminated, _, info = env.step(policy(observation))
+        rows.append(list(inner.signals().values()))
+        rewards.append(float(reward))
+        if terminated:
+            return np.array(rows), rewards, info
+
+
+@pytest.mark.parametrize("kwargs", MODES_OF_ACTION, ids=str)
+def test_gymnasium_finds_nothing_to_complain_about(kwargs: dict[str, Any]) -> None:
+    check_env(gym.make("EVHeatPump-v0", **kwargs).unwrapped)
+
+
+@pytest.mark.parametrize("kwargs", MODES_OF_ACTION, ids=str)
+def test_stable_baselines3_finds_nothing_to_complain_about(kwargs: dict[str, Any]) -> None:
+    check_env_of_sb3(make(**kwargs))
+
+
+@pytest.mark.parametrize("scenario", PAPER)
+def test_hpcu_through_the_environment_drives_what_simulate_drives(scenario: str) -> None:
+    expected = hp_gym.simulate(scenario)
+    env = make(scenario=scenario, continuous=True, actions=HpcuPolicy.ACTIONS)
+    rows, _, info = drive(env, HpcuPolicy(env))
+    np.testing.assert_array_equal(rows, expected.values)
+    assert info["end_reason"] == expected.end_reason
+    np.testing.assert_equal(env.unwrapped.summary(), dict(expected.summary))  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("scenario", [*PAPER, "ours/hot-soak-plus35"])
+def test_hpcu_on_levels_needs_within_5_percent_of_its_energy(scenario: str) -> None:
+    expected = hp_gym.simulate(scenario).summary["energy_kwh"]
+    env = make(scenario=scenario, actions=HpcuPolicy.ACTIONS)
+    drive(env, HpcuPolicy(env))
+    summary = env.unwrapped.summary()  # type: ignore[attr-defined]
+    assert summary["energy_kwh"] == pytest.approx(expected, rel=0.05)
+
+
+@pytest.mark.parametrize("reward", ["balanced", "energy", "comfort", "stored-heat", "durable"])
+def test_rewards_add_up_to_the_score(reward: str) -> None:
+    env = make(scenario="ours/commute-minus5", reward=reward)
+    _, rewards, info = drive(env, HpcuPolicy(env))
+    assert sum(rewards) == pytest.approx(info["kpis"]["score"], rel=1e-9)
+    assert info["reward_heat_left"] == 0.0 or reward == "stored-heat"
+
+
+def test_kpis_agree_with_the_totals_of_simulate() -> None:
+    env = make(scenario="jeffs2019/case1-1", continuous=True, actions="hpcu")
+    _, _, info = drive(env, HpcuPolicy(env))
+    summary = hp_gym.simulate("jeffs2019/case1-1").summary
+    assert info["kpis"]["chemical_energy_kwh"] == pytest.approx(summary["battery_chemical_energy_kwh"])
+    assert info["kpis"]["discomfort_k"] == pytest.approx(summary["discomfort_k"])
+
+
+def test_reference_energy_depends_on_the_scenario_alone() -> None:
+    references = []
+    for policy in ("hpcu", "random"):
+        env = make(scenario="jeffs2019/case1-1")
+        env.action_space.seed(5)
+        choose = HpcuPolicy(env) if policy == "hpcu" else lambda _, env=env: env.action_space.sample()
+        _, _, info = drive(env, choose)
+        references.append(info["kpis"]["reference_energy_kwh"])
+    assert references[0] == references[1]
+
+
+def test_parts_of_the_reward_add_up_to_it() -> None:
+    env = make()
+    env.reset(seed=3)
+    env.action_space.seed(3)
+    for _ in range(200):
+        _, reward, terminated, _, info = env.step(env.action_space.sample())
+        assert sum(info[name] for name in _core.reward_parts()) == pytest.approx(reward, abs=1e-15)
+        if terminated:
+            env.reset()
+
+
+@settings(max_examples=25)
+@given(seed=st.integers(0, 2**31))
+def test_a_mask_bit_equals_what_is_granted_in_the_first_second(seed: int) -> None:
+    """Each option of each connection is tried from the same state."""
+    env: Any = make()
+    env.reset(seed=seed)
+    env.action_space.seed(seed)
+    for _ in range(40):
+        env.step(env.action_space.sample())
+    inner: Any = env.unwrapped
+    state, masks = inner.get_state(), inner.action_masks()
+    counts = env.action_space.nvec
+    starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
+    actuators = [(name, options) for name, _, options, _ in _core.actuators()]
+    assert len(masks) == counts.sum()
+    for row in range(6):
+        name, options = actuators[row]
+        for option, circuit in enumerate(options):
+            inner.set_state(state)
+            action = env.action_space.sample()
+            action[row] = option
+            env.step(action)
+            granted = inner.signals()[f"{name}_connection"]
+            wanted = {"isolated": 0, "htc": HTC, "chiller": CHILLER}[circuit]
+            assert masks[starts[row] + option] == (granted == wanted), (name, circuit)
+    assert masks[starts[6] :].all()
+
+
+@pytest.mark.parametrize("copier", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])
+def test_a_copy_continues_bit_for_bit(copier: Any) -> None:
+    env = make(sensor_noise=0.01)
+    env.reset(seed=11)
+    env.action_space.seed(11)
+    actions = [env.action_space.sample() for _ in range(4000)]
+    for action in actions[:100]:
+        env.step(action)
+    twin = copier(env)
+    for action in actions[100:]:
+        ours, theirs = env.step(action), twin.step(action)
+        np.testing.assert_array_equal(ours[0], theirs[0])
+        assert ours[1:4] == theirs[1:4]
+        if ours[2]:
+            np.testing.assert_array_equal(env.reset()[0], twin.reset()[0])
+
+
+def test_set_state_goes_back_to_get_state() -> None:
+    env: Any = make().unwrapped
+    env.reset(seed=1)
+    env.action_space.seed(1)
+    actions = [env.action_space.sample() for _ in range(300)]
+    state = env.get_state()
+    first = [env.step(action)[1] for action in actions]
+    env.set_state(state)
+    assert [env.step(action)[1] for action in actions] == first
+
+
+def test_a_state_is_refused_by_other_settings_and_when_damaged() -> None:
+    env: Any = make().unwrapped
+    env.reset(seed=1)
+    state = env.get_state()
+    other: Any = make(reward="comfort").unwrapped
+    with pytest.raises(hp_gym.ConfigurationError, match="with other parameters"):
+        other.set_state(state)
+    for damaged, why in [(b"", "0 bytes"), (b"x" * 99, "something else"), (state[:-3], "damaged")]:
+        with pytest.raises(hp_gym.ConfigurationError, match=why):
+            env.set_state(damaged)
+    with pytest.raises(hp_gym.ConfigurationError, match="version 9"):
+        env.set_state(state[:4] + b"\x09\x00" + state[6:])
+    env.step(env.action_space.sample())
+
+
+def test_an_action_is_held_for_the_control_interval() -> None:
+    slow, fast = make(control_interval_s=10), make()
+    for env in (slow, fast):
+        env.reset(seed=4)
+    action = np.array([0, 1, 0, 1, 0, 1, 1, 6])
+    _, reward, *_ = slow.step(action)
+    rewards = [float(fast.step(action)[1]) for _ in range(10)]
+    assert reward == pytest.approx(sum(rewards), rel=1e-12)
+    assert slow.unwrapped.signals() == fast.unwrapped.signals()  # type: ignore[attr-defined]
+
+
+def test_reset_options_choose_a_trip_once() -> None:
+    env = make()
+    _, info = env.reset(seed=2, options={"scenario": "jeffs2019/case2-1"})
+    assert info["scenario"] == "jeffs2019/case2-1"
+    _, info = env.reset(options={"distribution": "test-v0"})
+    assert info["cycle"] in {"hwfet", "artemis-road", "artemis-motorway-130"}
+    _, info = env.reset()
+    assert info["cycle"] not in {"hwfet", "artemis-road", "artemis-motorway-130"}
+
+
+def test_the_same_seed_draws_the_same_trips_and_another_does_not() -> None:
+    env = make()
+    trips = []
+    for seed in (8, 8, 9):
+        env.reset(seed=seed)
+        trips.append([env.reset()[1]["ambient_temperature_degc"] for _ in range(3)])
+    assert trips[0] == trips[1] != trips[2]
+
+
+def test_without_a_seed_two_environments_drive_different_trips() -> None:
+    assert make().reset()[1] != make().reset()[1]
+
+
+def test_an_empty_battery_ends_the_trip_at_a_price() -> None:
+    env = make(scenario="jeffs2019/case1-1", overrides={"scenario.initial.state_of_charge_pct": 5.0})
+    env.reset(seed=0)
+    action = np.array([0, 0, 0, 0, 0, 1, 1, 0])
+    while True:
+        _, reward, terminated, truncated, info = env.step(action)
+        if terminated:
+            break
+    assert info["end_reason"] in {"battery_empty", "unserved_energy"}
+    assert not truncated
+    assert float(reward) < -400.0
+    assert "kpis" in info
+
+
+def test_returned_arrays_are_the_callers() -> None:
+    env = make(scenario="jeffs2019/case1-1")
+    first, _ = env.reset(seed=0)
+    kept = first.copy()
+    second = env.step(env.action_space.sample())[0]
+    second[:] = 7.0
+    np.testing.assert_array_equal(first, kept)
+    assert env.observation_space.contains(env.step(env.action_space.sample())[0])
+
+
+def test_flat_actions_are_modes_of_the_same_environment() -> None:
+    env = FlatActions(make(scenario="jeffs2019/case1-1"))
+    assert isinstance(env.action_space, gym.spaces.Discrete)
+    check_env_of_sb3(env)
+    env.reset(seed=0)
+    assert env.action_masks().shape == (len(MODES),)
+    assert env.action_masks()[0]
+    for mode in range(len(MODES)):
+        env.step(np.int64(mode))
+    with pytest.raises(ValueError, match="from 0 to"):
+        env.step(np.int64(len(MODES)))
+    with pytest.raises(hp_gym.ConfigurationError, match="unknown action `heater`"):
+        FlatActions(make(), [{"heater": 1}])
+    with pytest.raises(hp_gym.ConfigurationError, match=r"`cabin` is 'hot'.*isolated, htc, chiller"):
+        FlatActions(make(), [{"cabin": "hot"}])
+    with pytest.raises(hp_gym.ConfigurationError, match="must be MultiDiscrete"):
+        FlatActions(make(continuous=True))
+
+
+def test_pictures_are_drawn_in_the_size_asked_for() -> None:
+    env = make(scenario="jeffs2019/case1-1", render_mode="rgb_array", render_size=(640, 360))
+    env.reset(seed=0)
+    before: Any = env.render()
+    for _ in range(60):
+        env.step(np.array([1, 1, 0, 1, 0, 1, 1, 10]))
+    after: Any = env.render()
+    assert before.shape == after.shape == (360, 640, 3)
+    assert (before != after).any()

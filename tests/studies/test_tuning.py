@@ -1,0 +1,77 @@
+"""Rules tuned on training trips, written as a controller file."""
+
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import hp_gym
+from hp_gym import _core
+from hp_gym.agents.training import configuration
+from hp_gym.studies.tuning import objective as goals
+from hp_gym.studies.tuning import rule_choices, search
+from hp_gym.studies.tuning.ambient_bands import BANDS, Band
+from hp_gym.studies.tuning.objective import objective
+
+
+def test_papers_choices_in_every_band_drive_as_the_papers_controller(tmp_path: Path) -> None:
+    file = tmp_path / "paper.toml"
+    rule_choices.write(file, "The paper's.", [(band, rule_choices.PAPER) for band in BANDS])
+    for degc in (-15.0, -5.0, 5.0, 15.0, 30.0):
+        changes = [f"scenario.climate.ambient_temperature_degc={degc}"]
+        ours = hp_gym.simulate("ours/commute-minus5", str(file), changes)
+        paper = hp_gym.simulate("ours/commute-minus5", "hpcu", changes)
+        assert ours.summary == pytest.approx(paper.summary, rel=0.0, nan_ok=True)
+
+
+def test_band_of_the_ambient_temperature_decides(tmp_path: Path) -> None:
+    file = tmp_path / "two.toml"
+    cold, warm = Band(-20, 0), Band(0, 40)
+    rule_choices.write(
+        file,
+        "Two bands.",
+        [(cold, {**rule_choices.PAPER, "strategy.ptc": False}), (warm, rule_choices.PAPER)],
+    )
+    ptc_kwh = {
+        degc: hp_gym.simulate(
+            "jeffs2019/case1-1", str(file), [f"scenario.climate.ambient_temperature_degc={degc}"]
+        ).summary["ptc_energy_kwh"]
+        for degc in (-5.0, 5.0)
+    }
+    assert ptc_kwh[-5.0] == 0.0
+    assert ptc_kwh[5.0] > 0.1
+
+
+def test_search_repeats_with_its_seed_and_never_falls_behind_where_it_starts() -> None:
+    band = Band(0, 10)
+    with objective(band, 4, 0) as goal:
+        found = [search.tuned(goal, rule_choices.PAPER, 12, 5, lambda: None) for _ in range(2)]
+        assert found[0] == found[1]
+        assert found[0].score >= found[0].paper_score
+        assert goal.score(found[0].choices) == found[0].score
+
+
+@pytest.mark.parametrize("name", ["hpcu-best-mode", "hpcu-tuned"])
+def test_shipped_rules_are_no_worse_than_the_papers_on_training_trips_of_other_seeds(name: str) -> None:
+    rows = tomllib.loads(_core.config_text("controller", name))["ambient_bands"]
+    for band, row in zip(BANDS, rows, strict=True):
+        choices = dict(_flat("", {key: row[key] for key in ("strategy", "controller")}))
+        with objective(band, 64, 50_000) as goal:
+            assert goal.score(choices) >= goal.score(rule_choices.PAPER)
+
+
+def _flat(prefix: str, table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _flat(f"{prefix}{key}.", value)
+        else:
+            yield f"{prefix}{key}", value
+
+
+def test_rules_are_held_to_the_comfort_that_policies_are_held_to() -> None:
+    constraint = configuration.load("ppo", []).comfort_constraint
+    assert constraint is not None
+    assert (constraint.margin_k, constraint.margin_share) == (goals.MARGIN_K, goals.MARGIN_SHARE)
+    assert configuration.load("ppo", []).environment.reward == goals.REWARD
