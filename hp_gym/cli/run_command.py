@@ -94,7 +94,7 @@ def run(
             }
         )
         return
-    console.print(_table(trajectory))
+    console.print(_table(trajectory, vehicle))
     for path in (out, plot):
         if path is not None:
             console.print(f"Written: {path}", markup=False, soft_wrap=True)
@@ -108,14 +108,15 @@ def _plot(trajectory: "Trajectory", path: Path) -> None:
         plotting.plot(trajectory, path)
 
 
-def _table(trajectory: "Trajectory") -> "Table":
+def _table(trajectory: "Trajectory", vehicle: str | None) -> "Table":
     from rich.table import Table
     from rich.text import Text
 
     from hp_gym.cli.units import label, quantity
 
     end = trajectory.end_reason.replace("_", " ")
-    title = Text(f"{trajectory.scenario} with {trajectory.controller}: {end}", style="bold")
+    driven = trajectory.scenario if vehicle is None else f"{trajectory.scenario}, {vehicle}"
+    title = Text(f"{driven} with {trajectory.controller}: {end}", style="bold")
     table = Table(box=None, show_header=False, pad_edge=False, title=title, title_justify="left")
     table.add_column(no_wrap=True)
     table.add_column(justify="right", no_wrap=True)

@@ -23,6 +23,18 @@ WARNING = "loading a zip file of stable-baselines3 can run any code that its aut
 
 _LARGEST_DESCRIPTION_BYTES: Final = 64 * 2**20
 
+_DAMAGED: Final = (
+    zipfile.BadZipFile,
+    zlib.error,
+    EOFError,
+    NotImplementedError,  # an unknown compression
+    RuntimeError,  # encrypted
+    KeyError,
+    TypeError,
+    ValueError,
+)
+"""What reading a damaged archive raises, which differs from case to case."""
+
 _NOT_NEEDED: Final = {"learning_rate": 0.0, "lr_schedule": None}
 """What only training needs: a file names a schedule by its module, which may have moved since."""
 
@@ -90,11 +102,7 @@ def _algorithm(name: str) -> type[BaseAlgorithm]:
             module = str(told["policy_class"]["__module__"])
     except PolicyError:
         raise
-    # What a damaged archive raises differs from case to case.
-    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
-        message = f"{name}: no complete zip file of stable-baselines3"
-        raise PolicyError(message) from error
-    except (KeyError, TypeError, ValueError) as error:
+    except _DAMAGED as error:
         message = f"{name}: no complete zip file of stable-baselines3"
         raise PolicyError(message) from error
     known: dict[str, type[BaseAlgorithm]] = {
