@@ -29,6 +29,7 @@ __all__ = [
     "reference_policy",
     "reference_policy_names",
     "reward_parts",
+    "reward_terms",
     "signals",
     "totals",
     "vehicle_layout",
@@ -155,6 +156,8 @@ class Episode:
         """Name, unit, options (empty for levels) and description of each action."""
     def observation_rows(self) -> _Observed:
         """Name, unit, low, high and meaning of every row of an observation."""
+    def narrow_rows(self) -> list[tuple[str, str, float, float]]:
+        """Rows whose bounds a vehicle can leave: vehicle, row, upper bound, what the vehicle can reach."""
     def signal_names(self) -> tuple[str, ...]:
         """Names of all signals of the vehicle of the trip."""
     def layout(self) -> dict[str, Any]:
@@ -179,6 +182,12 @@ class Episode:
         """KPIs of the trip so far."""
     def summary(self) -> dict[str, float]:
         """Totals of the trip so far, as `simulate` gives them."""
+    def trip(self) -> dict[str, Any]:
+        """What the trip is: scenario, vehicle, cycle, part of it, duration, ambient temperature."""
+    def end_reason(self) -> str | None:
+        """Why the trip is over; None while it is not."""
+    def clipped_shares(self) -> dict[str, float]:
+        """Share of the observations of the trip in which each row was beyond its bounds."""
     def get_state(self) -> bytes:
         """Everything that the future depends on."""
     def set_state(self, state: bytes) -> None:
@@ -194,8 +203,20 @@ class FinishedTrip:
     def index(self) -> int:
         """Environment."""
     @property
+    def end_reason(self) -> str | None:
+        """Why it ended; None where the limit of steps cut it off."""
+    @property
+    def trip(self) -> dict[str, Any]:
+        """What it was: scenario, vehicle, cycle, part of it, duration, ambient temperature."""
+    @property
+    def kpis(self) -> dict[str, float]:
+        """Its KPIs."""
+    @property
+    def summary(self) -> dict[str, float]:
+        """Its totals, as `simulate` gives them."""
+    @property
     def info(self) -> _Info:
-        """Parts of its last reward; reason of its end and KPIs, unless it was cut off."""
+        """Info of its last step."""
     @property
     def last_observation(self) -> _Floats | None:
         """Its last observation, where the environment was reset at once."""
@@ -220,14 +241,20 @@ class Outcomes:
     def parts(self) -> NDArray[np.float64]:
         """Parts of the rewards, one row a part."""
     @property
+    def costs(self) -> NDArray[np.float64] | None:
+        """Costs, if wanted."""
+    @property
+    def terms(self) -> NDArray[np.float64] | None:
+        """Terms of the step, one row a term, if wanted."""
+    @property
+    def masks(self) -> _Bools | None:
+        """Options that would be granted next, one row an environment, if wanted."""
+    @property
     def finished(self) -> list[FinishedTrip]:
         """Trips that are over."""
     @property
     def reset(self) -> list[int]:
         """Environments that were reset."""
-    @property
-    def trips(self) -> _Info:
-        """What is told of their trips: a list or array by name."""
 
 @final
 class Vector:
@@ -250,11 +277,8 @@ class Vector:
         seeds: Sequence[int | None],
         scenarios: Sequence[str | None],
         distributions: Sequence[str | None],
-    ) -> _Info:
-        """Resets environments, each with its seed and, just this once, its scenario or distribution.
-
-        Tells of their trips: a list or array by name, one entry for each of them.
-        """
+    ) -> None:
+        """Resets environments, each with its seed and, just this once, its scenario or distribution."""
     def observe(self, indices: Sequence[int]) -> _Floats:
         """Observations of environments, one row each."""
     def step(self, action: NDArray[Any]) -> Outcomes:
@@ -269,6 +293,8 @@ class Vector:
         """Name, unit, options (empty for levels) and description of each action."""
     def observation_rows(self) -> _Observed:
         """Name, unit, low, high and meaning of every row of an observation."""
+    def narrow_rows(self) -> list[tuple[str, str, float, float]]:
+        """Rows whose bounds a vehicle can leave: vehicle, row, upper bound, what the vehicle can reach."""
     def signal_names(self, index: int) -> tuple[str, ...]:
         """Names of all signals of the vehicle of an environment's trip."""
     def layout(self, index: int) -> dict[str, Any]:
@@ -281,6 +307,12 @@ class Vector:
         """KPIs of the present trip of an environment."""
     def summary(self, index: int) -> dict[str, float]:
         """Totals of the present trip of an environment, as `simulate` gives them."""
+    def trip(self, index: int) -> dict[str, Any]:
+        """What the present trip is: scenario, vehicle, cycle, part of it, duration, ambient temperature."""
+    def end_reason(self, index: int) -> str | None:
+        """Why the present trip is over; None while it is not."""
+    def clipped_shares(self, index: int) -> dict[str, float]:
+        """Share of the observations of the present trip in which each row was beyond its bounds."""
     def fork(self, indices: Sequence[int]) -> None:
         """Lets every environment go on from where another one is now."""
     def get_state(self, index: int) -> bytes:
@@ -295,6 +327,9 @@ def observation_table() -> list[tuple[tuple[str, str, float, float, str], bool]]
 
 def reward_parts() -> list[str]:
     """Names of the parts of a reward."""
+
+def reward_terms() -> list[str]:
+    """Names of the terms, in physical units, that rewards and KPIs are counted from."""
 
 def action_groups() -> list[tuple[str, list[str]]]:
     """Groups of actuators (`default`, `hpcu`, `all`), and the names of those of the default architecture."""

@@ -22,7 +22,7 @@ class SB3VecEnv(VecEnv):
     """An `EVHeatPumpVectorEnv` as stable-baselines3 and sb3-contrib want it.
 
     Trips are reset within the step that ends them; `terminal_observation` and `TimeLimit.truncated` are in
-    the infos, as algorithms need them to bootstrap.
+    the infos, as algorithms need them to bootstrap. `venv.finished` tells of the trips that ended in the last step.
 
     Args:
         num_envs: Number of environments.
@@ -62,8 +62,7 @@ class SB3VecEnv(VecEnv):
         self._returns += rewards
         self._lengths += 1
         told: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
-        # Where all trips have ended, the parts are in their last infos only.
-        self.discomfort_rewards = np.array(infos.get(DISCOMFORT, np.zeros(self.num_envs)))
+        self.discomfort_rewards = infos[DISCOMFORT].copy()
         for index in np.flatnonzero(done).tolist():
             final = _one(infos["final_info"], index)
             final["terminal_observation"] = infos["final_obs"][index]

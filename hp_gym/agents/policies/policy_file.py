@@ -138,6 +138,11 @@ def assemble(name: str, text: str, tensors: Tensors, found: str | None) -> Saved
     except ConfigurationError as error:
         message = f"{name}: does not fit this version of hp_gym: {error}"
         raise PolicyError(message) from error
+    bounds = metadata.environment.observation_bounds
+    if bounds is not None and set(bounds) != set(metadata.environment.observations):
+        apart = sorted(set(bounds) ^ set(metadata.environment.observations))
+        message = f"{name}: metadata: `observation_bounds` and `observations` differ in `{apart[0]}`"
+        raise PolicyError(message)
     if counts != metadata.option_counts:
         message = (
             f"{name}: has {list(metadata.option_counts)} options, but its actions have {list(counts)} in "

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 from hp_gym.studies.benchmark.results import IDENTITY, KPIS
 
 if TYPE_CHECKING:
+    from hp_gym import _core
     from hp_gym.agents.controllers import Controller
-    from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
     from hp_gym.studies.benchmark.grid import Scenario
 
 ARRIVED: Final = "arrived"
@@ -38,19 +38,15 @@ _REWARD_TERMS: Final = (
 )
 
 
-def measure(
-    controller: Controller, scenario: Scenario, env: EVHeatPumpVectorEnv, index: int, end_reason: str
-) -> dict[str, Any]:
-    """Returns the KPIs of a trip that has just ended.
+def measure(controller: Controller, scenario: Scenario, trip: _core.FinishedTrip) -> dict[str, Any]:
+    """Returns the KPIs of a trip that has ended.
 
     Args:
         controller: Who drove.
         scenario: What was driven.
-        env: Where.
-        index: Place of the trip in it.
-        end_reason: Why it ended.
+        trip: How it went.
     """
-    terms, totals = env.kpis(index), env.summary(index)
+    terms, totals = trip.kpis, trip.summary
     distance_km = totals["distance_km"]
     charge_used_pct = scenario.variant.state_of_charge_pct - totals["final_charge_soc_pct"]
     values = {name: terms[name] for name in _REWARD_TERMS} | {name: totals[name] for name in _TOTALS}
@@ -62,7 +58,7 @@ def measure(
         # A full battery at this trip's consumption of charge.
         "range_km": _quotient(100.0 * distance_km, charge_used_pct),
         "comfortable_share_pct": 100.0 * totals["comfortable_share"],
-        "stranded": 0.0 if end_reason == ARRIVED else 1.0,
+        "stranded": 0.0 if trip.end_reason == ARRIVED else 1.0,
     }
     identity = {
         "controller": controller.name,
@@ -72,7 +68,7 @@ def measure(
         "cycle": scenario.cycle.name,
         "ambient_temperature_degc": scenario.ambient_temperature_degc,
         "band": scenario.band.name,
-        "end_reason": end_reason,
+        "end_reason": trip.end_reason,
     }
     return {name: identity[name] for name in IDENTITY} | {name: values[name] for name in KPIS}
 

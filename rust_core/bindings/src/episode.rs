@@ -4,11 +4,11 @@ use crate::actions::{self, Checked};
 use crate::errors::{ConfigurationError, gymnasium_error, to_python};
 use crate::vehicles::{ActuatorTuple, DEFAULT_ARCHITECTURE, SignalNames, action_tuple, layout_dict};
 use hp_episode::action::{ActionTable, GROUPS};
-use hp_episode::episode::{self, Clock};
+use hp_episode::episode::{self, Clock, Facts, Outcome};
 use hp_episode::observation::Observed;
-use hp_episode::reward::{PART_NAMES, Parts, RewardParameters, Terms};
+use hp_episode::reward::{PART_NAMES, Parts, RewardParameters, TERM_NAMES, Terms};
 use hp_episode::rows::RowSet;
-use hp_episode::setup::{Origin, Settings, Setup, Source};
+use hp_episode::setup::{Origin, Settings, Setup, Source, Told};
 use hp_plant::config::vehicle::architecture;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::exceptions::PyValueError;
@@ -50,27 +50,51 @@ pub fn speeds_m_s(episode: &episode::Episode) -> Vec<f64> {
     episode.trip().map_or_else(Vec::new, |(_, experiment)| experiment.cycle.speeds_m_s().to_vec())
 }
 
-/// What is told of a trip when it begins.
-pub fn trip_info<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<Bound<'py, PyDict>> {
-    let info = PyDict::new(py);
-    if let Some((origin, experiment)) = episode.trip() {
-        info.set_item(intern!(py, "scenario"), origin)?;
-        info.set_item(intern!(py, "vehicle"), &experiment.scenario.vehicle)?;
-        info.set_item(intern!(py, "cycle"), experiment.cycle.name())?;
-        info.set_item(intern!(py, "trip_s"), experiment.cycle.duration_s())?;
-        let ambient_degc = experiment.climate.ambient_temperature_degc.0;
-        info.set_item(intern!(py, "ambient_temperature_degc"), ambient_degc)?;
+/// What a trip is, by name.
+pub fn facts_dict<'py>(py: Python<'py>, facts: Option<&Facts>) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    if let Some(facts) = facts {
+        dict.set_item(intern!(py, "scenario"), &*facts.scenario)?;
+        dict.set_item(intern!(py, "vehicle"), &facts.vehicle)?;
+        dict.set_item(intern!(py, "cycle"), &facts.cycle)?;
+        dict.set_item(intern!(py, "window_s"), facts.window_s)?;
+        dict.set_item(intern!(py, "duration_s"), facts.duration_s)?;
+        dict.set_item(intern!(py, "ambient_temperature_degc"), facts.ambient_temperature_degc)?;
     }
-    Ok(info)
+    Ok(dict)
 }
 
-/// Parts of a reward by name.
-pub fn parts_info<'py>(py: Python<'py>, parts: &Parts) -> PyResult<Bound<'py, PyDict>> {
+/// What is told of a step: the parts of its reward, and what else is wanted. Nothing was paid where a trip has just begun.
+pub fn step_info<'py>(
+    py: Python<'py>,
+    told: &[Told],
+    (parts, terms): (&Parts, &Terms),
+    mask: impl FnOnce() -> Vec<bool>,
+) -> PyResult<Bound<'py, PyDict>> {
     let info = PyDict::new(py);
     for (name, part) in PART_NAMES.iter().zip(parts) {
         info.set_item(PyString::intern(py, name), part)?;
     }
+    if told.contains(&Told::Cost) {
+        info.set_item(intern!(py, "cost"), terms.cost())?;
+    }
+    if told.contains(&Told::Terms) {
+        for (name, value) in TERM_NAMES.iter().zip(terms.values()) {
+            info.set_item(PyString::intern(py, name), value)?;
+        }
+    }
+    if told.contains(&Told::ActionMask) {
+        let mask: Vec<i8> = mask().into_iter().map(i8::from).collect();
+        info.set_item(intern!(py, "action_mask"), mask.into_pyarray(py))?;
+    }
     Ok(info)
+}
+
+/// Options that the plant would grant in the coming second.
+pub fn mask_of(episode: &episode::Episode) -> Vec<bool> {
+    let mut mask = vec![true; episode.setup().actions.mask_length()];
+    episode.write_mask(&mut mask);
+    mask
 }
 
 /// KPIs of a trip by name.
@@ -82,15 +106,19 @@ pub fn kpis<'py>(py: Python<'py>, terms: &Terms, weights: &RewardParameters) -> 
     Ok(dict)
 }
 
-/// Totals of a trip by name.
-pub fn summary<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<Bound<'py, PyDict>> {
+/// Numbers by name.
+pub fn by_name<'py>(py: Python<'py>, values: Vec<(String, f64)>) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    if let (Some(run), Some((_, experiment))) = (episode.run(), episode.trip()) {
-        for (name, value) in run.summary.values(experiment.plant.layout()) {
-            dict.set_item(name, value)?;
-        }
+    for (name, value) in values {
+        dict.set_item(name, value)?;
     }
     Ok(dict)
+}
+
+/// Share of the observations of the trip in which each row was clipped, by name.
+pub fn clipped_shares<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<Bound<'py, PyDict>> {
+    let names = episode.setup().observations.rows().iter().map(|row| row.name.clone());
+    by_name(py, names.zip(episode.clipped_shares()).collect())
 }
 
 /// What a step gives: observation, reward, terminated, truncated, info.
@@ -102,6 +130,15 @@ pub type ObservedRow = (String, &'static str, f64, f64, String);
 /// A row as Python gets it.
 pub fn observed_row(row: &Observed) -> ObservedRow {
     (row.name.clone(), row.unit, row.low, row.high, row.description.clone())
+}
+
+/// Vehicle, row, its upper bound, and what the vehicle can reach.
+pub type NarrowRow = (String, String, f64, f64);
+
+/// Rows whose bounds a vehicle can leave.
+pub fn narrow_rows(setup: &Setup) -> Vec<NarrowRow> {
+    let rows = setup.narrow.iter();
+    rows.map(|row| (row.vehicle.clone(), row.row.clone(), row.high, row.limit)).collect()
 }
 
 /// One environment.
@@ -120,6 +157,11 @@ impl Episode {
     fn observed<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
         self.inner.observe(&mut self.observation);
         PyArray1::from_slice(py, &self.observation)
+    }
+
+    fn info<'py>(&self, py: Python<'py>, outcome: Option<&Outcome>) -> PyResult<Bound<'py, PyDict>> {
+        let (parts, terms) = outcome.map_or_else(Default::default, |outcome| (outcome.parts, outcome.terms));
+        step_info(py, &self.inner.setup().told, (&parts, &terms), || mask_of(&self.inner))
     }
 
     fn require_open(&self, py: Python<'_>) -> PyResult<()> {
@@ -182,6 +224,11 @@ impl Episode {
         self.inner.setup().observations.rows().iter().map(observed_row).collect()
     }
 
+    /// Rows whose bounds the vehicle can leave: vehicle, row, upper bound, limit of the vehicle.
+    fn narrow_rows(&self) -> Vec<NarrowRow> {
+        narrow_rows(self.inner.setup())
+    }
+
     fn seed(&mut self, seed: u64) {
         self.inner.seed(seed);
     }
@@ -196,7 +243,8 @@ impl Episode {
         self.require_open(py)?;
         let once = once(self.inner.setup(), Origin { scenario, distribution, ..Origin::default() })?;
         self.inner.reset(once.as_ref()).map_err(to_python)?;
-        Ok((self.observed(py), trip_info(py, &self.inner)?))
+        let observation = self.observed(py);
+        Ok((observation, self.info(py, None)?))
     }
 
     fn step<'py>(&mut self, py: Python<'py>, action: &Bound<'py, PyAny>) -> PyResult<Step<'py>> {
@@ -218,19 +266,13 @@ impl Episode {
         let Some(outcome) = outcome else {
             return Err(gymnasium_error(py, "ResetNeeded", "call reset() first"));
         };
-        let info = parts_info(py, &outcome.parts)?;
-        if let Some(end) = outcome.end {
-            info.set_item(intern!(py, "end_reason"), end.name())?;
-            info.set_item(intern!(py, "kpis"), self.kpis(py)?)?;
-        }
-        Ok((self.observed(py), outcome.reward, outcome.end.is_some(), false, info))
+        let observation = self.observed(py);
+        Ok((observation, outcome.reward, outcome.end.is_some(), false, self.info(py, Some(&outcome))?))
     }
 
     fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
         self.require_begun(py)?;
-        let mut mask = vec![true; self.inner.setup().actions.mask_length()];
-        self.inner.write_mask(&mut mask);
-        Ok(mask.into_pyarray(py))
+        Ok(mask_of(&self.inner).into_pyarray(py))
     }
 
     fn rule_based_action<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -286,7 +328,25 @@ impl Episode {
     /// Totals of the trip so far, as `simulate` gives them.
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.require_begun(py)?;
-        summary(py, &self.inner)
+        by_name(py, self.inner.totals())
+    }
+
+    /// What the trip is.
+    fn trip<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.require_begun(py)?;
+        facts_dict(py, self.inner.facts().as_ref())
+    }
+
+    /// Why the trip is over; none while it is not.
+    fn end_reason(&self, py: Python<'_>) -> PyResult<Option<&'static str>> {
+        self.require_begun(py)?;
+        Ok(self.inner.end().map(|end| end.name()))
+    }
+
+    /// Share of the observations of the trip in which each row was clipped, by name.
+    fn clipped_shares<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.require_begun(py)?;
+        clipped_shares(py, &self.inner)
     }
 
     fn get_state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
@@ -363,4 +423,10 @@ pub fn observation_table() -> PyResult<Vec<(ObservedRow, bool)>> {
 #[pyfunction]
 pub fn reward_parts() -> Vec<&'static str> {
     PART_NAMES.to_vec()
+}
+
+/// Names of the terms that rewards are counted from.
+#[pyfunction]
+pub fn reward_terms() -> Vec<&'static str> {
+    TERM_NAMES.to_vec()
 }

@@ -24,7 +24,9 @@ mod _core {
     #[pymodule_export]
     use super::embedded::{reference_policy, reference_policy_names};
     #[pymodule_export]
-    use super::episode::{Episode, action_groups, default_settings, observation_table, reward_parts};
+    use super::episode::{
+        Episode, action_groups, default_settings, observation_table, reward_parts, reward_terms,
+    };
     use super::errors::to_python;
     #[pymodule_export]
     use super::errors::{ConfigurationError, StateError};

@@ -1,15 +1,18 @@
 //! Many environments that step together, the interpreter's lock released.
 
 use crate::actions::{self, Checked};
-use crate::episode::{ObservedRow, kpis, looked, observed_row, once, parts_info, setup, speeds_m_s, summary};
+use crate::episode::{
+    NarrowRow, ObservedRow, by_name, clipped_shares, facts_dict, kpis, looked, mask_of, narrow_rows,
+    observed_row, once, setup, speeds_m_s, step_info,
+};
 use crate::errors::{gymnasium_error, to_python};
 use crate::vehicles::{ActuatorTuple, SignalNames, action_tuple, layout_dict};
 use hp_episode::episode::Episode;
-use hp_episode::setup::{Origin, Setup, Source};
-use hp_episode::vector::{self, Actions, ActionsMut, Autoreset, PARTS, Results};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use hp_episode::setup::{Origin, Setup, Source, Told};
+use hp_episode::vector::{self, Actions, ActionsMut, Autoreset, Extras, PARTS, Results, TERMS};
+use numpy::ndarray::Dimension;
+use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadwriteArray};
 use pyo3::exceptions::PyValueError;
-use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 use std::collections::HashMap;
@@ -21,8 +24,19 @@ type Names = Vec<Option<String>>;
 /// A trip that is over.
 #[pyclass(frozen, get_all, module = "hp_gym._core")]
 pub struct FinishedTrip {
+    /// Environment that drove it.
     index: usize,
+    /// Why it ended; none where the limit of steps cut it off.
+    end_reason: Option<&'static str>,
+    /// What it was.
+    trip: Py<PyDict>,
+    /// Its KPIs.
+    kpis: Py<PyDict>,
+    /// Its totals, as `simulate` gives them.
+    summary: Py<PyDict>,
+    /// Info of its last step.
     info: Py<PyDict>,
+    /// Its last observation, where the environment was reset within the step.
     last_observation: Option<Py<PyArray1<f32>>>,
 }
 
@@ -34,9 +48,11 @@ pub struct Outcomes {
     terminated: Py<PyArray1<bool>>,
     truncated: Py<PyArray1<bool>>,
     parts: Py<PyArray2<f64>>,
+    costs: Option<Py<PyArray1<f64>>>,
+    terms: Option<Py<PyArray2<f64>>>,
+    masks: Option<Py<PyArray2<bool>>>,
     finished: Vec<Py<FinishedTrip>>,
     reset: Vec<usize>,
-    trips: Py<PyDict>,
 }
 
 /// Many environments.
@@ -128,14 +144,14 @@ impl Vector {
     }
 
     /// Resets environments, each with its seed and, just this once, its scenario or distribution.
-    fn reset<'py>(
+    fn reset(
         &mut self,
-        py: Python<'py>,
+        py: Python<'_>,
         indices: Vec<usize>,
         seeds: Vec<Option<u64>>,
         scenarios: Names,
         distributions: Names,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<()> {
         self.require_open(py)?;
         indices.iter().try_for_each(|&index| self.check_index(index))?;
         let vehicles: Names = indices.iter().map(|&index| self.arguments.3[index].clone()).collect();
@@ -150,7 +166,7 @@ impl Vector {
         for ((&index, seed), once) in indices.iter().zip(seeds).zip(&sources) {
             self.inner.reset(index, seed, once.as_ref()).map_err(to_python)?;
         }
-        self.trips_info(py, &indices)
+        Ok(())
     }
 
     /// Observations of environments, one row each.
@@ -185,16 +201,29 @@ impl Vector {
         let terminated = PyArray1::zeros(py, count, false);
         let truncated = PyArray1::zeros(py, count, false);
         let parts = PyArray2::zeros(py, [PARTS, count], false);
+        let wants = |told| self.setup.told.contains(&told);
+        let costs = wants(Told::Cost).then(|| PyArray1::zeros(py, count, false));
+        let terms = wants(Told::Terms).then(|| PyArray2::zeros(py, [TERMS, count], false));
+        let mask_length = self.setup.actions.mask_length();
+        let masks = wants(Told::ActionMask).then(|| PyArray2::zeros(py, [count, mask_length], false));
         let events = {
             let (mut observations, mut rewards) = (observations.readwrite(), rewards.readwrite());
             let (mut terminated, mut truncated) = (terminated.readwrite(), truncated.readwrite());
             let mut parts = parts.readwrite();
+            let mut costs = costs.as_ref().map(PyArrayMethods::readwrite);
+            let mut terms = terms.as_ref().map(PyArrayMethods::readwrite);
+            let mut masks = masks.as_ref().map(PyArrayMethods::readwrite);
             let mut results = Results {
                 observations: observations.as_slice_mut()?,
                 rewards: rewards.as_slice_mut()?,
                 terminated: terminated.as_slice_mut()?,
                 truncated: truncated.as_slice_mut()?,
                 parts: parts.as_slice_mut()?,
+                extras: Extras {
+                    costs: room(costs.as_mut())?,
+                    terms: room(terms.as_mut())?,
+                    masks: room(masks.as_mut())?,
+                },
             };
             let actions = match &checked {
                 Checked::Levels(array) => Actions::Levels(array.as_slice()?),
@@ -209,8 +238,10 @@ impl Vector {
             terminated: terminated.unbind(),
             truncated: truncated.unbind(),
             parts: parts.unbind(),
+            costs: costs.map(Bound::unbind),
+            terms: terms.map(Bound::unbind),
+            masks: masks.map(Bound::unbind),
             finished: self.finished(py, events.finished)?,
-            trips: self.trips_info(py, &events.reset)?.unbind(),
             reset: events.reset,
         })
     }
@@ -284,6 +315,11 @@ impl Vector {
         self.setup.observations.rows().iter().map(observed_row).collect()
     }
 
+    /// Rows whose bounds a vehicle can leave: vehicle, row, upper bound, limit of the vehicle.
+    fn narrow_rows(&self) -> Vec<NarrowRow> {
+        narrow_rows(&self.setup)
+    }
+
     /// Speed at every full second of the trip of one environment.
     fn speeds_m_s<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.require_ready(py)?;
@@ -302,7 +338,28 @@ impl Vector {
     fn summary<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {
         self.require_ready(py)?;
         self.check_index(index)?;
-        summary(py, &self.inner.episodes()[index])
+        by_name(py, self.inner.episodes()[index].totals())
+    }
+
+    /// What the present trip of one environment is.
+    fn trip<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {
+        self.require_ready(py)?;
+        self.check_index(index)?;
+        facts_dict(py, self.inner.episodes()[index].facts().as_ref())
+    }
+
+    /// Why the present trip of one environment is over; none while it is not.
+    fn end_reason(&self, py: Python<'_>, index: usize) -> PyResult<Option<&'static str>> {
+        self.require_ready(py)?;
+        self.check_index(index)?;
+        Ok(self.inner.episodes()[index].end().map(|end| end.name()))
+    }
+
+    /// Share of the observations of one environment's trip in which each row was clipped, by name.
+    fn clipped_shares<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {
+        self.require_ready(py)?;
+        self.check_index(index)?;
+        clipped_shares(py, &self.inner.episodes()[index])
     }
 
     /// Lets every environment go on from where another one is now.
@@ -360,32 +417,34 @@ impl Vector {
     fn finished(&self, py: Python<'_>, trips: Vec<vector::Finished>) -> PyResult<Vec<Py<FinishedTrip>>> {
         let mut finished = Vec::with_capacity(trips.len());
         for trip in trips {
-            let info = parts_info(py, &trip.parts)?;
-            if let Some(end) = trip.end {
-                info.set_item("end_reason", end.name())?;
-                info.set_item("kpis", kpis(py, &trip.terms, &self.setup.reward)?)?;
-            }
-            let last_observation = trip.last_observation.map(|values| values.into_pyarray(py).unbind());
-            finished.push(Py::new(
-                py,
-                FinishedTrip { index: trip.index, info: info.unbind(), last_observation },
-            )?);
+            let index = trip.index;
+            let (last_observation, mask) = trip.last_seen.map_or_else(
+                || (None, None),
+                |seen| (Some(seen.observation.into_pyarray(py).unbind()), Some(seen.mask)),
+            );
+            let mask = || mask.unwrap_or_else(|| mask_of(&self.inner.episodes()[index]));
+            let info = step_info(py, &self.setup.told, (&trip.parts, &trip.last_terms), mask)?;
+            let trip = FinishedTrip {
+                index,
+                end_reason: trip.end.map(|end| end.name()),
+                trip: facts_dict(py, Some(&trip.facts))?.unbind(),
+                kpis: kpis(py, &trip.terms, &self.setup.reward)?.unbind(),
+                summary: by_name(py, trip.totals)?.unbind(),
+                info: info.unbind(),
+                last_observation,
+            };
+            finished.push(Py::new(py, trip)?);
         }
         Ok(finished)
     }
+}
 
-    /// What is told of trips when they begin: a list or array by name.
-    fn trips_info<'py>(&self, py: Python<'py>, indices: &[usize]) -> PyResult<Bound<'py, PyDict>> {
-        let trips = || indices.iter().filter_map(|&index| self.inner.episodes()[index].trip());
-        let durations_s: Vec<i64> = trips().map(|(_, trip)| trip.cycle.duration_s() as i64).collect();
-        let ambient: Vec<f64> = trips().map(|(_, trip)| trip.climate.ambient_temperature_degc.0).collect();
-        let told = PyDict::new(py);
-        told.set_item(intern!(py, "scenario"), trips().map(|(origin, _)| origin).collect::<Vec<_>>())?;
-        let vehicles: Vec<&str> = trips().map(|(_, trip)| trip.scenario.vehicle.as_str()).collect();
-        told.set_item(intern!(py, "vehicle"), vehicles)?;
-        told.set_item(intern!(py, "cycle"), trips().map(|(_, trip)| trip.cycle.name()).collect::<Vec<_>>())?;
-        told.set_item(intern!(py, "trip_s"), durations_s.into_pyarray(py))?;
-        told.set_item(intern!(py, "ambient_temperature_degc"), ambient.into_pyarray(py))?;
-        Ok(told)
+/// The entries of an array that is there; none of one that is not.
+fn room<'a, T: Element, D: Dimension>(
+    array: Option<&'a mut PyReadwriteArray<'_, T, D>>,
+) -> PyResult<&'a mut [T]> {
+    match array {
+        Some(array) => Ok(array.as_slice_mut()?),
+        None => Ok(&mut []),
     }
 }

@@ -8,7 +8,7 @@
 use hp_episode::episode::Episode;
 use hp_episode::random::Random;
 use hp_episode::setup::{Origin, Settings, Setup};
-use hp_episode::vector::{Actions, Autoreset, PARTS, Results, Vector};
+use hp_episode::vector::{Actions, Autoreset, Extras, PARTS, Results, Vector};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -52,6 +52,7 @@ fn main() {
                 terminated: &mut terminated,
                 truncated: &mut truncated,
                 parts: &mut parts,
+                extras: Extras::default(),
             };
             let start = Instant::now();
             vector.step(Actions::Levels(&levels), &mut results).expect("built in");

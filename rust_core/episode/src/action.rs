@@ -3,6 +3,7 @@
 use crate::defaults::Defaults;
 use crate::rows::{ActionRow, RowSet, unknown};
 use hp_plant::architecture::layout::{ACTUATOR_PLACES, BranchSide, CABIN_PLACES, Layout};
+use hp_plant::circuits::branches::BranchTemperatures;
 use hp_plant::command::{Command, Purpose, Scale};
 use hp_plant::error::{PlantError, PlantResult};
 use hp_plant::plant::{Disturbance, Plant};
@@ -317,7 +318,8 @@ impl FittedActions {
         defaults: &Defaults,
         mask: &mut [bool],
     ) {
-        let asked = Asked { plant, state, disturbance, defaults, actions: self };
+        let temperatures = plant.branch_temperatures(state, &[0.0; CABIN_PLACES], disturbance);
+        let asked = Asked { plant, state, disturbance, defaults, actions: self, temperatures };
         let mut place = 0;
         for (column, &count) in self.columns.iter().zip(&table.option_counts) {
             for option in 0..count {
@@ -356,6 +358,8 @@ struct Asked<'a> {
     disturbance: &'a Disturbance,
     defaults: &'a Defaults,
     actions: &'a FittedActions,
+    /// Those that drive each branch, with fresh air for the cabins.
+    temperatures: BranchTemperatures,
 }
 
 impl Asked<'_> {
@@ -367,12 +371,14 @@ impl Asked<'_> {
             return true;
         };
         let BranchSide::Core(cabin) = layout.branches[branch].side else {
-            return self.allowed(branch, [0.0; CABIN_PLACES]);
+            return self.allowed(branch, &self.temperatures);
         };
         let at = |share: f64| {
-            let mut recirculation = [0.0; CABIN_PLACES];
-            recirculation[cabin] = share;
-            self.allowed(branch, recirculation)
+            let mut temperatures = self.temperatures;
+            let (outside_k, inside_k) =
+                (self.disturbance.air.temperature_k, temperatures.nodes_k[layout.cabins[cabin].air.index()]);
+            temperatures.core_inlet_k[cabin] = (1.0 - share) * outside_k + share * inside_k;
+            self.allowed(branch, &temperatures)
         };
         let cabin_rows = &layout.cabins[cabin];
         if self.actions.selects(cabin_rows.recirculation_row) || self.actions.selects(cabin_rows.blower_row) {
@@ -384,9 +390,8 @@ impl Asked<'_> {
         }
     }
 
-    fn allowed(&self, branch: usize, recirculation: [f64; CABIN_PLACES]) -> bool {
-        let temperatures = self.plant.branch_temperatures(self.state, &recirculation, self.disturbance);
-        let difference_k = self.plant.branch_difference_k(&temperatures, branch);
+    fn allowed(&self, branch: usize, temperatures: &BranchTemperatures) -> bool {
+        let difference_k = self.plant.branch_difference_k(temperatures, branch);
         let ambient_k = self.disturbance.air.temperature_k;
         self.plant.branches.allows(branch, difference_k, ambient_k, self.state.connected[branch])
     }

@@ -8,6 +8,7 @@ pub mod defaults;
 pub mod episode;
 pub mod garage;
 pub mod kinds;
+pub mod limits;
 pub mod observation;
 mod prefetch;
 pub mod random;

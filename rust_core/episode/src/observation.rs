@@ -10,6 +10,8 @@ use hp_plant::numerics::thermal_network::Node;
 use hp_plant::plant::Plant;
 use hp_plant::signals::{Reader, View};
 use hp_trip::experiment::Experiment;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// A row of an observation.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,7 +53,7 @@ pub const PREVIEW_GROUP: &str = "preview";
 const PREVIEW_S: [usize; 6] = [2, 5, 10, 20, 40, 80];
 
 /// Longest time left that is told apart [s].
-const LONGEST_TIME_LEFT_S: f64 = 3600.0;
+const LONGEST_TIME_LEFT_S: f64 = 7200.0;
 
 fn row(name: impl Into<String>, unit: &'static str, bounds: (f64, f64), source: Source) -> Observed {
     let name = name.into();
@@ -112,7 +114,7 @@ pub fn all(set: &RowSet, actions: &ActionTable) -> Vec<Observed> {
         rows.push(row(name, "-", (-1.0, 1.0), Source::Asked(column)).meaning(meaning));
     }
     for seconds in PREVIEW_S {
-        let preview = row(format!("speed_in_{seconds}_s"), "m/s", (0.0, 40.0), Source::SpeedAhead(seconds));
+        let preview = row(format!("speed_in_{seconds}_s"), "m/s", (0.0, 50.0), Source::SpeedAhead(seconds));
         rows.push(preview.meaning("speed on the cycle ahead").hidden());
     }
     let left = row("time_left_s", "s", (0.0, LONGEST_TIME_LEFT_S), Source::TimeLeft);
@@ -141,12 +143,33 @@ fn refused(value: impl Into<String>, allowed: &str) -> PlantError {
     PlantError::InvalidArgument { what: "observations".into(), value: value.into(), allowed: allowed.into() }
 }
 
+fn replace_bounds(rows: &mut [Observed], name: &str, low: f64, high: f64) -> PlantResult<()> {
+    let Some(place) = rows.iter().position(|row| row.name == name) else {
+        let names: Vec<&str> = rows.iter().map(|row| row.name.as_str()).collect();
+        return Err(unknown("observation", name, &names));
+    };
+    if !(low.is_finite() && high.is_finite() && low < high) {
+        return Err(PlantError::InvalidArgument {
+            what: format!("observation_bounds of `{name}`"),
+            value: format!("({low}, {high})"),
+            allowed: "must be two finite numbers, the lower first".into(),
+        });
+    }
+    (rows[place].low, rows[place].high) = (low, high);
+    Ok(())
+}
+
 impl ObservationTable {
-    /// Rows by name out of those that there are; a group stands for its rows.
+    /// Rows by name out of those that there are; a group stands for its rows. `bounds` replaces those of rows by name.
     ///
     /// # Errors
-    /// An unknown name, a row given twice, or none at all.
-    pub fn new(names: &[String], set: &RowSet, actions: &ActionTable) -> PlantResult<Self> {
+    /// An unknown name, a row given twice, or none at all; bounds of a row that is not selected, or that are none.
+    pub fn new(
+        names: &[String],
+        set: &RowSet,
+        actions: &ActionTable,
+        bounds: &BTreeMap<String, (f64, f64)>,
+    ) -> PlantResult<Self> {
         let all = all(set, actions);
         let mut rows: Vec<Observed> = Vec::new();
         for name in names {
@@ -177,6 +200,9 @@ impl ObservationTable {
         if rows.is_empty() {
             return Err(refused("empty", "must name at least one row"));
         }
+        for (name, &(low, high)) in bounds {
+            replace_bounds(&mut rows, name, low, high)?;
+        }
         let lows = rows.iter().map(|row| row.low).collect();
         let gains = rows.iter().map(|row| 2.0 / (row.high - row.low)).collect();
         Ok(Self { rows, lows, gains })
@@ -188,22 +214,24 @@ impl ObservationTable {
         &self.rows
     }
 
-    /// Writes an observation; `blur`, where there is noise, gives that of each measured row.
+    /// Writes an observation and counts what was beyond the bounds; `blur`, where there is noise, gives that of each
+    /// measured row.
     pub fn write(
         &self,
         fitted: &FittedObservations,
         look: &Look<'_>,
         blur: Option<impl FnMut() -> f64>,
         values: &mut [f32],
+        clipped: &mut Clipped,
     ) {
         match self.rows.len() {
             count if count <= USUAL_ROWS => {
-                self.write_through(fitted, look, blur, &mut [0.0; USUAL_ROWS], values)
+                self.write_through(fitted, look, blur, &mut [0.0; USUAL_ROWS], values, clipped)
             }
             count if count <= MANY_ROWS => {
-                self.write_through(fitted, look, blur, &mut [0.0; MANY_ROWS], values)
+                self.write_through(fitted, look, blur, &mut [0.0; MANY_ROWS], values, clipped)
             }
-            count => self.write_through(fitted, look, blur, &mut vec![0.0; count], values),
+            count => self.write_through(fitted, look, blur, &mut vec![0.0; count], values, clipped),
         }
     }
 
@@ -215,6 +243,7 @@ impl ObservationTable {
         blur: Option<impl FnMut() -> f64>,
         zeros: &mut [f64],
         values: &mut [f32],
+        clipped: &mut Clipped,
     ) {
         let numbers = &mut zeros[..self.rows.len()];
         fitted.read(look, numbers);
@@ -225,10 +254,66 @@ impl ObservationTable {
                 *number += if measured { blur() / gain } else { 0.0 };
             }
         }
-        for (((value, number), low), gain) in values.iter_mut().zip(numbers).zip(&self.lows).zip(&self.gains)
+        let mut beyond = false;
+        for (((value, number), low), gain) in
+            values.iter_mut().zip(&mut *numbers).zip(&self.lows).zip(&self.gains)
         {
-            *value = ((*number - low) * gain - 1.0).clamp(-1.0, 1.0) as f32;
+            *number = (*number - low) * gain - 1.0;
+            beyond |= number.abs() > BEYOND;
+            *value = number.clamp(-1.0, 1.0) as f32;
         }
+        clipped.observations += 1;
+        if beyond {
+            clipped.count(numbers);
+        }
+    }
+}
+
+/// From here on a scaled value counts as beyond its bounds; what lies nearer is rounding.
+const BEYOND: f64 = 1.0 + 1e-6;
+
+/// How often values of a trip's observations were beyond the bounds of their rows, and held there.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Clipped {
+    observations: u64,
+    /// Observations with any value beyond its bounds.
+    any: u64,
+    /// Row by row; empty while there was none.
+    times: Vec<u64>,
+}
+
+impl Clipped {
+    #[cold]
+    fn count(&mut self, scaled: &[f64]) {
+        self.any += 1;
+        self.times.resize(scaled.len(), 0);
+        for (times, value) in self.times.iter_mut().zip(scaled) {
+            *times += u64::from(value.abs() > BEYOND);
+        }
+    }
+
+    /// Whether these can be the counts of so many rows.
+    #[must_use]
+    pub fn fits(&self, rows: usize) -> bool {
+        (self.times.is_empty() || self.times.len() == rows)
+            && self.any <= self.observations
+            && self.times.iter().all(|&times| times <= self.any)
+    }
+
+    /// Share of the observations in which any value was clipped.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        self.any as f64 / self.observations.max(1) as f64
+    }
+
+    /// Share of the observations in which each of so many rows was clipped.
+    #[must_use]
+    pub fn shares(&self, rows: usize) -> Vec<f64> {
+        let share = |row| {
+            let times = self.times.get(row).copied().unwrap_or_default();
+            times as f64 / self.observations.max(1) as f64
+        };
+        (0..rows).map(share).collect()
     }
 }
 
@@ -351,7 +436,7 @@ mod tests {
         let set = rows_of(architectures);
         let actions = ActionTable::new(&["default".to_owned()], &set, &BTreeMap::new()).expect("built in");
         let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
-        let observations = ObservationTable::new(&names, &set, &actions).expect("built in");
+        let observations = ObservationTable::new(&names, &set, &actions, &BTreeMap::new()).expect("built in");
         (actions, observations)
     }
 
@@ -388,7 +473,7 @@ mod tests {
             };
             let look = Look { view, experiment: &experiment, asked: &asked, steps: run.steps };
             let mut shown = vec![0.0; table.rows().len()];
-            table.write(&fitted, &look, None::<fn() -> f64>, &mut shown);
+            table.write(&fitted, &look, None::<fn() -> f64>, &mut shown, &mut Clipped::default());
             signals.clear();
             experiment.look(&run, &mut signals);
             for (row, shown) in table.rows().iter().zip(shown) {
@@ -425,7 +510,7 @@ mod tests {
             View { plant: &experiment.plant, state: &run.state, record: None, disturbance: &disturbance };
         let look = Look { view, experiment: &experiment, asked: &Command([0.5; _]), steps: 0 };
         let mut shown = vec![9.0; table.rows().len()];
-        table.write(&fitted, &look, Some(|| 1.0), &mut shown);
+        table.write(&fitted, &look, Some(|| 1.0), &mut shown, &mut Clipped::default());
         let lacking = |row: &&(&Observed, f32)| {
             row.0.source == Source::Signal && experiment.plant.signals.find(&row.0.name).is_none()
         };

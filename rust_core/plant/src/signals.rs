@@ -213,10 +213,10 @@ impl SignalTable {
         };
         self.rows.extend([
             function("time_s", "s", "time since the start", |v| v.state.time_s)
-                .within(0.0, 3600.0)
+                .within(0.0, 7200.0)
                 .seen(rank::TIME),
             function("speed_m_s", "m/s", "vehicle speed at the end of the step", speed)
-                .within(0.0, 40.0)
+                .within(0.0, 50.0)
                 .seen(rank::SPEED),
             function("ambient_temperature_degc", "degC", "ambient air", |v| {
                 v.disturbance.air.temperature_k - ZERO_CELSIUS_K
@@ -295,7 +295,7 @@ impl SignalTable {
             function("auxiliary_power_w", "W", "12 V load, pumps, blower and fan", |v| {
                 v.recorded(|r| r.flows.sum_w(&v.plant.layout().base_loads))
             })
-            .within(0.0, 1500.0)
+            .within(0.0, 2000.0)
             .seen(rank::AUXILIARY),
         ]);
     }
@@ -334,7 +334,7 @@ impl SignalTable {
             function("evaporating_pressure_bar", "bar", "evaporating pressure", |v| {
                 v.recorded(|r| r.refrigeration.evaporating_pressure_pa * 1e-5)
             })
-            .within(0.0, 10.0)
+            .within(0.0, 16.0)
             .seen(rank::EVAPORATING),
             function("condensing_temperature_degc", "degC", "condensing temperature", |v| {
                 v.recorded(|r| r.refrigeration.condensing_temperature_k - ZERO_CELSIUS_K)
@@ -345,7 +345,7 @@ impl SignalTable {
             function("discharge_temperature_degc", "degC", "gas at the compressor outlet", |v| {
                 v.recorded(|r| r.refrigeration.discharge_temperature_k - ZERO_CELSIUS_K)
             })
-            .within(-40.0, 140.0)
+            .within(-40.0, 160.0)
             .seen(rank::DISCHARGE),
             function("refrigerant_flow_kg_s", "kg/s", "refrigerant mass flow", |v| {
                 v.recorded(|r| r.refrigeration.mass_flow_kg_s)
@@ -411,27 +411,27 @@ impl SignalTable {
 /// Bounds and rank of a flow that agents see by default.
 fn seen_flow(layout: &Layout, flow: Flow) -> Option<(f64, f64, u8)> {
     let fixed = match flow {
-        Flow::TRACTION => Some((-100_000.0, 100_000.0, rank::TRACTION)),
-        Flow::BATTERY => Some((-100_000.0, 100_000.0, rank::BATTERY_POWER)),
-        Flow::COMPRESSOR => Some((0.0, 5000.0, rank::COMPRESSOR_POWER)),
-        Flow::CONDENSER => Some((0.0, 15_000.0, rank::CONDENSER)),
-        Flow::EVAPORATOR => Some((0.0, 15_000.0, rank::EVAPORATOR)),
+        Flow::TRACTION => Some((-200_000.0, 200_000.0, rank::TRACTION)),
+        Flow::BATTERY => Some((-200_000.0, 200_000.0, rank::BATTERY_POWER)),
+        Flow::COMPRESSOR => Some((0.0, 8000.0, rank::COMPRESSOR_POWER)),
+        Flow::CONDENSER => Some((0.0, 20_000.0, rank::CONDENSER)),
+        Flow::EVAPORATOR => Some((0.0, 20_000.0, rank::EVAPORATOR)),
         _ => None,
     };
     if fixed.is_some() {
         return fixed;
     }
     if layout.heaters.iter().any(|heater| heater.flow == flow) {
-        return Some((0.0, 6000.0, rank::HEATER_POWER));
+        return Some((0.0, 8000.0, rank::HEATER_POWER));
     }
     if layout.exchangers.iter().any(|exchanger| exchanger.flow == flow) {
-        return Some((0.0, 15_000.0, rank::EXCHANGER));
+        return Some((0.0, 20_000.0, rank::EXCHANGER));
     }
     let branch = layout.branches.iter().find(|branch| branch.flow == flow)?;
     let (most_w, place) = match layout.members[branch.member].kind {
         MemberKind::Cabin => (10_000.0, 0),
         MemberKind::Battery => (10_000.0, 1),
-        MemberKind::FrontEnd => (15_000.0, 2),
+        MemberKind::FrontEnd => (30_000.0, 2),
         MemberKind::Motor => (10_000.0, 3),
         MemberKind::Transmission => (10_000.0, 4),
         MemberKind::Plate => (10_000.0, 5),
