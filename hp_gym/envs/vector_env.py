@@ -49,8 +49,8 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         **chosen: The other settings of `EVHeatPumpEnv`.
 
     Attributes:
-        finished: Trips that ended in the last step, each with its environment's `index`, its `end_reason` (None
-            where it was cut off), `trip`, `kpis` and `summary`.
+        finished: Trips that ended in the last step, each with its environment's `index`, its `end_reason`
+            (None where it was cut off), `trip`, `kpis` and `summary`.
 
     Raises:
         ConfigurationError: A name, key or value is not accepted; the message says what is.
@@ -364,7 +364,7 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
     def _seeds(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
         if seed is None:
             return [None] * self.num_envs
-        if not isinstance(seed, Sequence | np.ndarray) or isinstance(seed, str):
+        if not isinstance(seed, Sequence | np.ndarray):
             first = settings.whole_seed(seed)
             super().reset(seed=first)
             return [settings.core_seed(first + i) for i in range(self.num_envs)]

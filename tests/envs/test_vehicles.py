@@ -27,8 +27,8 @@ def mine(folder: Path) -> Path:
 def test_every_car_is_an_environment(vehicle: str) -> None:
     env: Any = gym.make("EVHeatPump-v0", vehicle=vehicle, scenario=SCENARIO).unwrapped
     check_env(env)
-    _, info = env.reset(seed=0)
-    assert info["vehicle"] == vehicle
+    env.reset(seed=0)
+    assert env.trip()["vehicle"] == vehicle
     layout = env.layout()
     names = [name for name, _, _ in _core.signals(layout["architecture"])]
     assert list(env.signals()) == names
@@ -83,8 +83,8 @@ def test_a_car_is_given_by_its_path(tmp_path: Path) -> None:
 def test_different_cars_share_a_vector(tmp_path: Path) -> None:
     cars = [None, str(mine(tmp_path)), "jeffs2019-direct", "jeffs2019-three-loops"]
     envs: Any = gym.make_vec("EVHeatPump-v0", num_envs=4, vehicle=cars, scenario=SCENARIO)
-    _, infos = envs.reset(seed=0)
-    assert infos["vehicle"].tolist() == ["jeffs2019", *cars[1:]]
+    envs.reset(seed=0)
+    assert [envs.trip(index)["vehicle"] for index in range(4)] == ["jeffs2019", *cars[1:]]
     names = envs.action_names
     assert {"thermal_battery", "cabin_condenser", "compressor_power"} <= set(names)
     envs.action_space.seed(0)
