@@ -5,7 +5,7 @@ use super::planned::PlannedWiring;
 use super::shape::{Given, Shape, bring, entering_w, is_first, settle};
 use super::{Forecast, INLET_PLACES};
 use crate::architecture::indices::{
-    BranchIndices, ExchangerIndices, FrontEndIndices, HeaterIndices, Indices, LoopIndices, OwnedIndices,
+    BranchIndices, ExchangerIndices, FrontEndIndices, HeaterIndices, Indices, LoopIndices,
 };
 use crate::architecture::layout::CabinLayout;
 use crate::architecture::wiring::SERIES_PLACES;
@@ -138,8 +138,8 @@ impl<W: Wiring> Shape for Compiled<W> {
     type Factors = Factors;
 
     #[inline(always)]
-    fn indices(_: &OwnedIndices) -> Indices<'_> {
-        const { W::INDICES }
+    fn indices<'a>(_: &'a Indices<'a>) -> &'a Indices<'a> {
+        const { &W::INDICES }
     }
 
     #[inline(always)]

@@ -4,7 +4,7 @@ use super::conditions::{Conditions, Constants};
 use super::planned::PlannedWiring;
 use super::{Forecast, INLET_PLACES};
 use crate::architecture::indices::{
-    BranchIndices, ExchangerIndices, FrontEndIndices, HeaterIndices, Indices, LoopIndices, OwnedIndices,
+    BranchIndices, ExchangerIndices, FrontEndIndices, HeaterIndices, Indices, LoopIndices,
 };
 use crate::architecture::layout::CabinLayout;
 use crate::architecture::wiring::{Inlet, Link};
@@ -32,8 +32,9 @@ pub trait Shape {
     /// A factorised step.
     type Factors;
 
-    /// Positions: constants, or those of the vehicle.
-    fn indices(own: &OwnedIndices) -> Indices<'_>;
+    /// Positions: constants, or those of the vehicle. A reference, since the compiler looks through one to a constant, while it
+    /// forgets what it knows of a copy as soon as a function that is not inlined gets to see it.
+    fn indices<'a>(own: &'a Indices<'a>) -> &'a Indices<'a>;
 
     /// Entry number `N` of [`Indices::loops`], if there is one.
     fn circuit_at<const N: usize>(shape: &Indices<'_>) -> Option<LoopIndices>;
@@ -121,7 +122,8 @@ pub(crate) use each;
 #[inline(always)]
 pub(super) fn bring(inlet: &Inlet, heat_w: f64, now: &Conditions<'_>, sources_w: &mut NodeValues) {
     let mut left = 1.0;
-    for place in inlet.series.iter().flatten() {
+    for place in &inlet.series {
+        let Some(place) = place else { continue };
         let share =
             left * (now.branches_w_k[usize::from(place.branch)] / now.rates_w_k[usize::from(inlet.circuit)]);
         sources_w[place.node.index()] += heat_w * share;
@@ -134,7 +136,8 @@ pub(super) fn bring(inlet: &Inlet, heat_w: f64, now: &Conditions<'_>, sources_w:
 #[inline(always)]
 pub(super) fn settle(inlet: &Inlet, heat_w: f64, now: &Conditions<'_>, flows: &mut Flows) {
     let mut left = 1.0;
-    for place in inlet.series.iter().flatten() {
+    for place in &inlet.series {
+        let Some(place) = place else { continue };
         let share =
             left * (now.branches_w_k[usize::from(place.branch)] / now.rates_w_k[usize::from(inlet.circuit)]);
         let given_w = heat_w * share;
