@@ -1,28 +1,37 @@
 //! What rows do that the agent does not control: what the rule-based controller would ask of them.
 
-use crate::action::{FittedActions, chosen};
+use crate::action::FittedActions;
 use hp_plant::architecture::declaration::Level;
 use hp_plant::architecture::layout::{ExchangerSide, Layout};
 use hp_plant::command::{Command, MAXIMUM_REQUEST_W, Purpose};
 use hp_trip::controllers::rule_based::CabinMode;
 use hp_trip::experiment::Experiment;
 
-/// An option of a choice, found in a command.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// An option of a choice, found in a command as [`chosen`] finds it: here by the part of the range that it has.
+///
+/// [`chosen`]: crate::action::chosen
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Ask {
     row: usize,
-    count: usize,
-    option: usize,
+    /// Number of options.
+    count: f64,
+    /// Where the option begins and ends, counted in options; the first and the last take what lies outside the range too.
+    from: f64,
+    to: f64,
 }
 
 impl Ask {
     fn of(layout: &Layout, row: usize, option: usize) -> Self {
-        Self { row, count: layout.actuators[row].options().len(), option }
+        let count = layout.actuators[row].options().len();
+        let from = if option == 0 { f64::NEG_INFINITY } else { option as f64 };
+        let to = if option + 1 >= count { f64::INFINITY } else { (option + 1) as f64 };
+        Self { row, count: count as f64, from, to }
     }
 
     #[inline]
     fn is_in(self, command: &Command) -> bool {
-        chosen(self.count, command.0[self.row]) == self.option
+        let place = 0.5 * (f64::from(command.0[self.row]) + 1.0) * self.count;
+        (place >= self.from) & (place < self.to)
     }
 }
 
@@ -105,6 +114,7 @@ impl Defaults {
 
     /// The whole command for values of the selected rows.
     #[must_use]
+    #[inline]
     pub fn complete(
         &self,
         actions: &FittedActions,
@@ -156,7 +166,7 @@ fn cooling(layout: &Layout, cabin: usize) -> Vec<Ask> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::action::ActionTable;
+    use crate::action::{ActionTable, chosen};
     use crate::rows::RowSet;
     use std::collections::BTreeMap;
 
@@ -188,10 +198,24 @@ mod tests {
     }
 
     #[test]
+    fn an_option_is_found_where_the_plant_finds_it() {
+        let layout = hp_plant::config::vehicle::architecture("jeffs2019").expect("built in");
+        let row = layout.actuator("ambient").expect("there");
+        let count = layout.actuators[row].options().len();
+        let mut command = Command::default();
+        for step in -150..=150 {
+            command.0[row] = step as f32 / 120.0;
+            let found: Vec<usize> =
+                (0..count).filter(|&option| Ask::of(&layout, row, option).is_in(&command)).collect();
+            assert_eq!(found, [chosen(count, command.0[row])], "{}", command.0[row]);
+        }
+    }
+
+    #[test]
     fn a_cabin_without_connection_is_cooled_by_the_valve_of_its_evaporator() {
         let layout = hp_plant::config::vehicle::architecture("direct").expect("built in");
         let asks = cooling(&layout, 0);
         let names: Vec<&str> = asks.iter().map(|ask| layout.actuators[ask.row].name.as_str()).collect();
-        assert_eq!((names, asks[0].option), (vec!["cabin_evaporator"], 1));
+        assert_eq!((names, asks[0].from), (vec!["cabin_evaporator"], 1.0));
     }
 }

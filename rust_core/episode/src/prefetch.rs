@@ -11,12 +11,14 @@ pub fn prefetch<T>(value: &T, share: usize, shares: usize) {
         const LINE_BYTES: usize = 64;
         let start = std::ptr::from_ref(value).cast::<i8>();
         let before = start.addr() % LINE_BYTES;
-        for offset in (share * LINE_BYTES..before + size_of::<T>()).step_by(shares * LINE_BYTES) {
+        let mut offset = share * LINE_BYTES;
+        while offset < before + size_of::<T>() {
             // SAFETY: a prefetch reads nothing and faults on no address; this one is of a line of `value`.
             #[allow(unsafe_code)]
             unsafe {
                 _mm_prefetch::<_MM_HINT_T1>(start.wrapping_sub(before).wrapping_add(offset));
             }
+            offset += shares * LINE_BYTES;
         }
     }
     #[cfg(not(target_arch = "x86_64"))]
