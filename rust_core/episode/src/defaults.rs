@@ -114,7 +114,6 @@ impl Defaults {
 
     /// The whole command for values of the selected rows.
     #[must_use]
-    #[inline]
     pub fn complete(
         &self,
         actions: &FittedActions,
@@ -122,27 +121,40 @@ impl Defaults {
         experiment: &Experiment,
         time_s: f64,
     ) -> Command {
-        let mut command = self.command;
+        let mut command = Command::default();
+        self.complete_into(actions, values, experiment, time_s, &mut command);
+        command
+    }
+
+    /// [`Self::complete`] that writes the command to where it is kept.
+    pub fn complete_into(
+        &self,
+        actions: &FittedActions,
+        values: &[f32],
+        experiment: &Experiment,
+        time_s: f64,
+        command: &mut Command,
+    ) {
+        *command = self.command;
         if !self.requests.is_empty() {
             let requested = experiment.commander.requested(time_s);
             for &row in &self.requests {
                 command.0[row] = experiment.plant.ranges.normalise(row, requested[row]);
             }
         }
-        actions.enter(values, &mut command);
+        actions.enter(values, command);
         for cabin in &self.cabins {
             if !actions.selects(cabin.recirculation_row) {
-                let cooling = cabin.cooling.iter().any(|ask| ask.is_in(&command));
+                let cooling = cabin.cooling.iter().any(|ask| ask.is_in(command));
                 let share = if cooling { cabin.cooling_recirculation } else { cabin.heating_recirculation };
                 command.0[cabin.recirculation_row] = share;
             }
         }
         for rejection in &self.rejections {
-            if !actions.selects(rejection.request_row) && rejection.rejects.is_in(&command) {
+            if !actions.selects(rejection.request_row) && rejection.rejects.is_in(command) {
                 command.0[rejection.request_row] = rejection.unlimited;
             }
         }
-        command
     }
 }
 
