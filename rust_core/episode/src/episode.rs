@@ -215,7 +215,7 @@ impl Episode {
         progress.ruled = None;
         for _ in 0..self.setup.control_interval_s {
             let time_s = progress.run.state.time_s;
-            progress.asked = defaults.complete(&car.actions, values, experiment, time_s);
+            defaults.complete_into(&car.actions, values, experiment, time_s, &mut progress.asked);
             let disturbance = experiment.disturbance(progress.run.steps);
             progress.end = experiment.step(&mut progress.run, &progress.asked);
             added += progress.meter.add(

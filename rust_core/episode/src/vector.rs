@@ -458,7 +458,7 @@ impl Job<'_> {
     /// Asks for a share of what will be worked on soon.
     fn fetch_ahead(&self, share: usize) {
         if let Some(episode) = self.ahead {
-            prefetch(episode, share, SHARES);
+            prefetch::<_, SHARES>(episode, share);
         }
     }
 

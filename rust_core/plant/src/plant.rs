@@ -309,7 +309,8 @@ impl Plant {
         record: &mut StepRecord,
         tamper: &mut impl FnMut(Stage, &mut Flows),
     ) {
-        let shape = &S::indices(&self.network.indices);
+        let own = self.network.indices.view();
+        let shape = S::indices(&own);
         let compressor_row = shape.compressor_row.map(usize::from);
         let mut period = Period::of(self.ranges.decoded(command, shape.actuators, compressor_row));
         let sight = Sight { vehicle: &self.vehicle, parameters: &self.parameters, shape, disturbance };

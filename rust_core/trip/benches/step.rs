@@ -17,15 +17,16 @@ use hp_plant::plant::StepRecord;
 use hp_trip::experiment::Experiment;
 use hp_trip::run::Run;
 use std::hint::black_box;
-use workload::{Segment, compressor_on_segments, random_segments};
+use workload::{Car, Executor, Segment, compressor_on_segments, random_segments};
 
 /// Mean step of the paper's scenarios while the compressor runs, and of all scenarios under random actions.
 fn steps(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("plant step");
     group.sample_size(10);
+    let own = Car { executor: Executor::Own, vehicle: None };
     let workloads: [(&str, Vec<Segment>); 2] = [
-        ("HPCU, compressor on", compressor_on_segments(workload::Executor::Own)),
-        ("random actions", random_segments(workload::Executor::Own)),
+        ("HPCU, compressor on", compressor_on_segments(&own)),
+        ("random actions", random_segments(&own, true)),
     ];
     for (name, segments) in workloads {
         group.throughput(Throughput::Elements(segments.iter().map(|segment| segment.steps as u64).sum()));

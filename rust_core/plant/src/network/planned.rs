@@ -4,7 +4,7 @@ use super::conditions::state;
 use super::shape::{Given, Shape, bring, entering_w, is_first, settle};
 use super::{Forecast, INLET_PLACES};
 use crate::architecture::indices::{
-    BranchIndices, ExchangerIndices, FrontEndIndices, HeaterIndices, Indices, LoopIndices, OwnedIndices,
+    BranchIndices, ExchangerIndices, FrontEndIndices, HeaterIndices, Indices, LoopIndices,
 };
 use crate::architecture::layout::CabinLayout;
 use crate::architecture::wiring::{HeatSource, Inlet, Link};
@@ -33,8 +33,8 @@ impl Shape for Planned {
     type Factors = Scratch;
 
     #[inline(always)]
-    fn indices(own: &OwnedIndices) -> Indices<'_> {
-        own.view()
+    fn indices<'a>(own: &'a Indices<'a>) -> &'a Indices<'a> {
+        own
     }
 
     #[inline(always)]
