@@ -22,8 +22,8 @@ create_exception!(
 /// Python exception for an error of the plant.
 pub fn to_python(error: PlantError) -> PyErr {
     match error {
-        PlantError::State { .. } => StateError::new_err(error.to_string()),
-        _ => ConfigurationError::new_err(error.to_string()),
+        PlantError::State { .. } => StateError::new_err(error.in_one_line()),
+        _ => ConfigurationError::new_err(error.in_one_line()),
     }
 }
 

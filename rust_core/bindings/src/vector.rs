@@ -2,7 +2,7 @@
 
 use crate::actions::{self, Checked};
 use crate::episode::{ObservedRow, kpis, looked, observed_row, once, parts_info, setup, speeds_m_s, summary};
-use crate::errors::{gymnasium_error, to_python};
+use crate::errors::{ConfigurationError, gymnasium_error, to_python};
 use crate::vehicles::{ActuatorTuple, SignalNames, action_tuple, layout_dict};
 use hp_episode::episode::Episode;
 use hp_episode::setup::{Origin, Setup, Source};
@@ -65,6 +65,24 @@ fn origins(scenarios: &Names, distributions: &Names, vehicles: &Names) -> Vec<Or
     names.map(origin).collect()
 }
 
+/// Checks that there is an entry for each environment, and no thread that would have none to work on.
+fn check_counts(scenarios: &Names, distributions: &Names, vehicles: &Names, threads: usize) -> PyResult<()> {
+    let count = scenarios.len();
+    if count == 0 || distributions.len() != count || vehicles.len() != count {
+        let message = format!(
+            "scenarios, distributions and vehicles are {count}, {} and {}, but must be one each for every environment",
+            distributions.len(),
+            vehicles.len()
+        );
+        return Err(ConfigurationError::new_err(message));
+    }
+    if !(1..=count).contains(&threads) {
+        let message = format!("threads is {threads}, but must be between 1 and the {count} environments");
+        return Err(ConfigurationError::new_err(message));
+    }
+    Ok(())
+}
+
 impl Vector {
     fn require_open(&self, py: Python<'_>) -> PyResult<()> {
         if self.closed {
@@ -110,6 +128,7 @@ impl Vector {
         step_limit: Option<u64>,
         threads: usize,
     ) -> PyResult<Self> {
+        check_counts(&scenarios, &distributions, &vehicles, threads)?;
         let (setup, sources) = setup(&settings, &origins(&scenarios, &distributions, &vehicles))?;
         let mode = match autoreset.as_str() {
             "NextStep" => Autoreset::NextStep,
@@ -121,7 +140,12 @@ impl Vector {
                 return Err(PyValueError::new_err(message));
             }
         };
-        let episodes = sources.into_iter().map(|source| Episode::new(Arc::clone(&setup), source)).collect();
+        let mut episodes = Vec::new();
+        if episodes.try_reserve_exact(sources.len()).is_err() {
+            let message = format!("there is no memory for {} environments", sources.len());
+            return Err(ConfigurationError::new_err(message));
+        }
+        episodes.extend(sources.into_iter().map(|source| Episode::new(Arc::clone(&setup), source)));
         let inner = vector::Vector::new(episodes, mode, step_limit, threads);
         let arguments = (settings, scenarios, distributions, vehicles, autoreset, step_limit, threads);
         Ok(Self { arguments, setup, autoreset: mode, inner, names: SignalNames::default(), closed: false })

@@ -322,6 +322,8 @@ impl Episode {
         let current = match current {
             None => None,
             Some(Driven { trip, vehicle, fingerprint, progress }) => {
+                let checked = self.setup.garage.check(&trip);
+                checked.map_err(|error| snapshot::refused(format!("of a trip that cannot be ({error})")))?;
                 let begun = Current::of(&self.setup, trip)?;
                 if begun.car.fingerprint != fingerprint {
                     let now = vehicle_label(&begun.experiment);

@@ -204,7 +204,8 @@ impl Vector {
             over: vec![false; count],
             autoreset,
             step_limit,
-            threads: Threads::new(threads),
+            // More than one an environment would have nothing to do.
+            threads: Threads::new(threads.min(count)),
         }
     }
 
