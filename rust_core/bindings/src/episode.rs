@@ -2,9 +2,11 @@
 
 use crate::actions::{self, Checked};
 use crate::errors::{ConfigurationError, gymnasium_error, to_python};
+use crate::experiment::to_dict;
 use crate::vehicles::{ActuatorTuple, DEFAULT_ARCHITECTURE, SignalNames, action_tuple, layout_dict};
 use hp_episode::action::{ActionTable, GROUPS};
 use hp_episode::episode::{self, Clock};
+use hp_episode::guard::{Guarded, caught};
 use hp_episode::observation::Observed;
 use hp_episode::reward::{PART_NAMES, Parts, RewardParameters, Terms};
 use hp_episode::rows::RowSet;
@@ -25,7 +27,7 @@ pub fn setup(settings: &str, origins: &[Origin]) -> PyResult<(Arc<Setup>, Vec<So
         let key = error.path().to_string();
         ConfigurationError::new_err(format!("setting `{key}`: {}", error.into_inner()))
     })?;
-    Setup::new(&settings, origins).map_err(to_python)
+    caught(|| Setup::new(&settings, origins)).map_err(to_python)
 }
 
 /// Source of trips of one reset; none where it names no scenario and no distribution.
@@ -33,7 +35,7 @@ pub fn once(setup: &Setup, origin: Origin) -> PyResult<Option<Source>> {
     if origin.scenario.is_none() && origin.distribution.is_none() {
         return Ok(None);
     }
-    setup.source(&origin).map(Some).map_err(to_python)
+    caught(|| setup.source(&origin)).map(Some).map_err(to_python)
 }
 
 /// Present values of all signals.
@@ -84,13 +86,10 @@ pub fn kpis<'py>(py: Python<'py>, terms: &Terms, weights: &RewardParameters) -> 
 
 /// Totals of a trip by name.
 pub fn summary<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    if let (Some(run), Some((_, experiment))) = (episode.run(), episode.trip()) {
-        for (name, value) in run.summary.values(experiment.plant.layout()) {
-            dict.set_item(name, value)?;
-        }
+    match (episode.run(), episode.trip()) {
+        (Some(run), Some((_, experiment))) => to_dict(py, &run.summary, experiment.plant.layout()),
+        _ => Ok(PyDict::new(py)),
     }
-    Ok(dict)
 }
 
 /// What a step gives: observation, reward, terminated, truncated, info.
@@ -110,16 +109,17 @@ pub struct Episode {
     settings: String,
     scenario: Option<String>,
     distribution: Option<String>,
-    inner: episode::Episode,
+    inner: Guarded<episode::Episode>,
     observation: Vec<f32>,
     names: SignalNames,
     closed: bool,
 }
 
 impl Episode {
-    fn observed<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
-        self.inner.observe(&mut self.observation);
-        PyArray1::from_slice(py, &self.observation)
+    fn observed<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let observation = &mut self.observation;
+        self.inner.change(|episode| Ok(episode.observe(observation))).map_err(to_python)?;
+        Ok(PyArray1::from_slice(py, &self.observation))
     }
 
     fn require_open(&self, py: Python<'_>) -> PyResult<()> {
@@ -135,6 +135,7 @@ impl Episode {
 
     fn require_begun(&self, py: Python<'_>) -> PyResult<()> {
         self.require_open(py)?;
+        self.inner.require_sound().map_err(to_python)?;
         if !self.inner.begun() {
             return Err(gymnasium_error(py, "ResetNeeded", "call reset() first"));
         }
@@ -152,7 +153,7 @@ impl Episode {
         let (setup, mut sources) = setup(&settings, &[origin])?;
         let source = sources.remove(0);
         let observation = vec![0.0; setup.observations.rows().len()];
-        let inner = episode::Episode::new(setup, source);
+        let inner = Guarded::new(episode::Episode::new(setup, source));
         Ok(Self {
             settings,
             scenario,
@@ -182,21 +183,18 @@ impl Episode {
         self.inner.setup().observations.rows().iter().map(observed_row).collect()
     }
 
-    fn seed(&mut self, seed: u64) {
-        self.inner.seed(seed);
-    }
-
-    #[pyo3(signature = (scenario=None, distribution=None))]
+    #[pyo3(signature = (scenario=None, distribution=None, seed=None))]
     fn reset<'py>(
         &mut self,
         py: Python<'py>,
         scenario: Option<String>,
         distribution: Option<String>,
+        seed: Option<u64>,
     ) -> PyResult<(Bound<'py, PyArray1<f32>>, Bound<'py, PyDict>)> {
         self.require_open(py)?;
         let once = once(self.inner.setup(), Origin { scenario, distribution, ..Origin::default() })?;
-        self.inner.reset(once.as_ref()).map_err(to_python)?;
-        Ok((self.observed(py), trip_info(py, &self.inner)?))
+        self.inner.begin(|episode| episode.restart(seed, once.as_ref())).map_err(to_python)?;
+        Ok((self.observed(py)?, trip_info(py, &self.inner)?))
     }
 
     fn step<'py>(&mut self, py: Python<'py>, action: &Bound<'py, PyAny>) -> PyResult<Step<'py>> {
@@ -207,14 +205,18 @@ impl Episode {
         }
         let setup = self.inner.setup();
         let outcome = match actions::read(action, setup, None)? {
-            Checked::Values(array) => self.inner.step(array.as_slice()?),
+            Checked::Values(array) => {
+                let values = array.as_slice()?;
+                self.inner.change(|episode| Ok(episode.step(values)))
+            }
             Checked::Levels(array) => {
                 let levels = array.as_slice()?.iter().enumerate();
                 let values: Vec<f32> =
                     levels.map(|(column, &level)| setup.actions.value(column, level as usize)).collect();
-                self.inner.step(&values)
+                self.inner.change(|episode| Ok(episode.step(&values)))
             }
         };
+        let outcome = outcome.map_err(to_python)?;
         let Some(outcome) = outcome else {
             return Err(gymnasium_error(py, "ResetNeeded", "call reset() first"));
         };
@@ -223,13 +225,13 @@ impl Episode {
             info.set_item(intern!(py, "end_reason"), end.name())?;
             info.set_item(intern!(py, "kpis"), self.kpis(py)?)?;
         }
-        Ok((self.observed(py), outcome.reward, outcome.end.is_some(), false, info))
+        Ok((self.observed(py)?, outcome.reward, outcome.end.is_some(), false, info))
     }
 
     fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
         self.require_begun(py)?;
         let mut mask = vec![true; self.inner.setup().actions.mask_length()];
-        self.inner.write_mask(&mut mask);
+        caught(|| Ok(self.inner.write_mask(&mut mask))).map_err(to_python)?;
         Ok(mask.into_pyarray(py))
     }
 
@@ -238,11 +240,11 @@ impl Episode {
         let width = self.inner.setup().actions.rows().len();
         if self.inner.setup().continuous {
             let mut values = vec![0.0; width];
-            self.inner.rule_based_values(&mut values);
+            self.inner.change(|episode| Ok(episode.rule_based_values(&mut values))).map_err(to_python)?;
             Ok(values.into_pyarray(py).into_any())
         } else {
             let mut levels = vec![0; width];
-            self.inner.rule_based_levels(&mut levels);
+            self.inner.change(|episode| Ok(episode.rule_based_levels(&mut levels))).map_err(to_python)?;
             Ok(levels.into_pyarray(py).into_any())
         }
     }
@@ -290,13 +292,13 @@ impl Episode {
     }
 
     fn get_state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        self.inner.require_sound().map_err(to_python)?;
         Ok(PyBytes::new(py, &self.inner.to_bytes(Clock::default()).map_err(to_python)?))
     }
 
     fn set_state(&mut self, py: Python<'_>, state: &[u8]) -> PyResult<()> {
         self.require_open(py)?;
-        self.inner.resume(self.inner.read(state).map_err(to_python)?);
-        Ok(())
+        self.inner.begin(|episode| episode.restore(state)).map_err(to_python)
     }
 
     fn close(&mut self) {
@@ -320,7 +322,7 @@ impl Episode {
     }
 
     fn __setstate__(&mut self, state: (Vec<u8>, bool)) -> PyResult<()> {
-        self.inner.resume(self.inner.read(&state.0).map_err(to_python)?);
+        self.inner.begin(|episode| episode.restore(&state.0)).map_err(to_python)?;
         self.closed = state.1;
         Ok(())
     }

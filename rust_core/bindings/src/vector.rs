@@ -5,8 +5,10 @@ use crate::episode::{ObservedRow, kpis, looked, observed_row, once, parts_info, 
 use crate::errors::{ConfigurationError, gymnasium_error, to_python};
 use crate::vehicles::{ActuatorTuple, SignalNames, action_tuple, layout_dict};
 use hp_episode::episode::Episode;
+use hp_episode::guard::{Guarded, caught};
 use hp_episode::setup::{Origin, Setup, Source};
 use hp_episode::vector::{self, Actions, ActionsMut, Autoreset, PARTS, Results};
+use hp_plant::error::PlantResult;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
@@ -45,7 +47,7 @@ pub struct Vector {
     arguments: Arguments,
     setup: Arc<Setup>,
     autoreset: Autoreset,
-    inner: vector::Vector,
+    inner: Guarded<vector::Vector>,
     names: SignalNames,
     closed: bool,
 }
@@ -97,6 +99,7 @@ impl Vector {
 
     fn require_ready(&self, py: Python<'_>) -> PyResult<()> {
         self.require_open(py)?;
+        self.inner.require_sound().map_err(to_python)?;
         if !self.inner.all_begun() {
             return Err(gymnasium_error(py, "ResetNeeded", "call reset() first"));
         }
@@ -109,6 +112,22 @@ impl Vector {
             return Err(PyValueError::new_err(format!("index is {index}, but must be below {count}")));
         }
         Ok(())
+    }
+
+    /// Begins environments anew; only all of them together are sound after a panic.
+    fn begin(
+        &mut self,
+        indices: &[usize],
+        work: impl FnOnce(&mut vector::Vector) -> PlantResult<()>,
+    ) -> PyResult<()> {
+        let mut named = vec![false; self.inner.episodes().len()];
+        indices.iter().for_each(|&index| named[index] = true);
+        let begun = if named.into_iter().all(|named| named) {
+            self.inner.begin(work)
+        } else {
+            self.inner.change(work)
+        };
+        begun.map_err(to_python)
     }
 
     fn width(&self) -> usize {
@@ -146,7 +165,7 @@ impl Vector {
             return Err(ConfigurationError::new_err(message));
         }
         episodes.extend(sources.into_iter().map(|source| Episode::new(Arc::clone(&setup), source)));
-        let inner = vector::Vector::new(episodes, mode, step_limit, threads);
+        let inner = Guarded::new(vector::Vector::new(episodes, mode, step_limit, threads));
         let arguments = (settings, scenarios, distributions, vehicles, autoreset, step_limit, threads);
         Ok(Self { arguments, setup, autoreset: mode, inner, names: SignalNames::default(), closed: false })
     }
@@ -171,9 +190,11 @@ impl Vector {
             }
             sources.push(loaded[&origin].clone());
         }
-        for ((&index, seed), once) in indices.iter().zip(seeds).zip(&sources) {
-            self.inner.reset(index, seed, once.as_ref()).map_err(to_python)?;
-        }
+        let begins = |all: &mut vector::Vector| {
+            let each = indices.iter().zip(seeds).zip(&sources);
+            each.into_iter().try_for_each(|((&index, seed), once)| all.reset(index, seed, once.as_ref()))
+        };
+        self.begin(&indices, begins)?;
         self.trips_info(py, &indices)
     }
 
@@ -185,7 +206,7 @@ impl Vector {
             let mut values = array.readwrite();
             for (row, &index) in values.as_slice_mut()?.chunks_mut(width).zip(&indices) {
                 self.check_index(index)?;
-                self.inner.episodes_mut()[index].observe(row);
+                self.inner.change(|all| Ok(all.episodes_mut()[index].observe(row))).map_err(to_python)?;
             }
         }
         Ok(array)
@@ -225,7 +246,7 @@ impl Vector {
                 Checked::Values(array) => Actions::Values(array.as_slice()?),
             };
             let inner = &mut self.inner;
-            py.detach(|| inner.step(actions, &mut results)).map_err(to_python)?
+            py.detach(|| inner.change(|all| all.step(actions, &mut results))).map_err(to_python)?
         };
         Ok(Outcomes {
             observations: observations.unbind(),
@@ -246,7 +267,7 @@ impl Vector {
         {
             let mut values = array.readwrite();
             for (mask, episode) in values.as_slice_mut()?.chunks_mut(length).zip(self.inner.episodes()) {
-                episode.write_mask(mask);
+                caught(|| Ok(episode.write_mask(mask))).map_err(to_python)?;
             }
         }
         Ok(array)
@@ -261,13 +282,15 @@ impl Vector {
             let array = PyArray2::zeros(py, shape, false);
             let mut values = array.readwrite();
             let values = values.as_slice_mut()?;
-            py.detach(|| inner.rule_based_actions(ActionsMut::Values(values)));
+            let work = |all: &mut vector::Vector| Ok(all.rule_based_actions(ActionsMut::Values(values)));
+            py.detach(|| inner.change(work)).map_err(to_python)?;
             Ok(array.into_any())
         } else {
             let array = PyArray2::zeros(py, shape, false);
             let mut levels = array.readwrite();
             let levels = levels.as_slice_mut()?;
-            py.detach(|| inner.rule_based_actions(ActionsMut::Levels(levels)));
+            let work = |all: &mut vector::Vector| Ok(all.rule_based_actions(ActionsMut::Levels(levels)));
+            py.detach(|| inner.change(work)).map_err(to_python)?;
             Ok(array.into_any())
         }
     }
@@ -340,12 +363,12 @@ impl Vector {
         for &index in &indices {
             self.check_index(index)?;
         }
-        self.inner.fork(&indices);
-        Ok(())
+        self.inner.change(|all| Ok(all.fork(&indices))).map_err(to_python)
     }
 
     fn get_state<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyBytes>> {
         self.check_index(index)?;
+        self.inner.require_sound().map_err(to_python)?;
         Ok(PyBytes::new(py, &self.inner.to_bytes(index).map_err(to_python)?))
     }
 
@@ -355,7 +378,7 @@ impl Vector {
         indices.iter().try_for_each(|&index| self.check_index(index))?;
         let states: Vec<(usize, &[u8])> =
             indices.iter().copied().zip(states.iter().map(Vec::as_slice)).collect();
-        self.inner.restore(&states).map_err(to_python)
+        self.begin(&indices, |all| all.restore(&states))
     }
 
     fn close(&mut self) {
@@ -374,7 +397,7 @@ impl Vector {
 
     fn __setstate__(&mut self, state: (Vec<Vec<u8>>, bool)) -> PyResult<()> {
         let states: Vec<(usize, &[u8])> = state.0.iter().map(Vec::as_slice).enumerate().collect();
-        self.inner.restore(&states).map_err(to_python)?;
+        self.inner.begin(|all| all.restore(&states)).map_err(to_python)?;
         self.closed = state.1;
         Ok(())
     }

@@ -168,6 +168,22 @@ impl Episode {
         Ok(())
     }
 
+    /// [`Self::reset`], with the random numbers started anew where there is a seed.
+    ///
+    /// # Errors
+    /// As of [`Self::reset`]; nothing has changed then.
+    pub fn restart(&mut self, seed: Option<u64>, once: Option<&Source>) -> PlantResult<()> {
+        let before = (self.random.clone(), self.noise.clone());
+        if let Some(seed) = seed {
+            self.seed(seed);
+        }
+        let begun = self.reset(once);
+        if begun.is_err() {
+            (self.random, self.noise) = before;
+        }
+        begun
+    }
+
     /// Whether a trip was begun.
     #[must_use]
     pub fn begun(&self) -> bool {
@@ -335,6 +351,16 @@ impl Episode {
             }
         };
         Ok(Restored { clock, random, noise, current })
+    }
+
+    /// Goes on from what [`Self::to_bytes`] wrote.
+    ///
+    /// # Errors
+    /// See [`Self::read`]; nothing has changed then.
+    pub fn restore(&mut self, bytes: &[u8]) -> PlantResult<()> {
+        let restored = self.read(bytes)?;
+        self.resume(restored);
+        Ok(())
     }
 
     /// Goes on from a state that was read.

@@ -243,11 +243,7 @@ impl Vector {
     /// # Errors
     /// See [`Episode::reset`].
     pub fn reset(&mut self, index: usize, seed: Option<u64>, once: Option<&Source>) -> PlantResult<()> {
-        let episode = &mut self.episodes[index];
-        if let Some(seed) = seed {
-            episode.seed(seed);
-        }
-        episode.reset(once)?;
+        self.episodes[index].restart(seed, once)?;
         self.elapsed[index] = 0;
         self.over[index] = false;
         self.begun[index] = true;

@@ -53,6 +53,12 @@ pub enum PlantError {
         /// What would have been accepted, as a sentence fragment ("must be ...").
         allowed: String,
     },
+    /// A mistake of this package: something panicked.
+    #[error("internal error ({message}); please report it")]
+    Internal {
+        /// What was told, and where.
+        message: String,
+    },
     /// Anything wrong in a file that another one names.
     #[error("{error} (named by {by})")]
     Named {

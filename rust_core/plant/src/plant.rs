@@ -176,6 +176,12 @@ impl Plant {
         self
     }
 
+    /// Steps in each second.
+    #[must_use]
+    pub fn substeps_a_second(&self) -> u32 {
+        self.substeps
+    }
+
     /// The same vehicle with the network stepped by the executor for any architecture, even where it was compiled.
     #[doc(hidden)]
     #[must_use]

@@ -107,9 +107,11 @@ fn another_rule_set_drives_by_its_file_s_name_and_warms_the_cabin() {
         assert_eq!(matches!(*experiment.rules, Rules::Thermostat(_)), controller == "thermostat");
         let (summary, end) = experiment.totals();
         assert_eq!(end, EndReason::Arrived);
-        let values: BTreeMap<String, f64> = summary.values(experiment.plant.layout()).into_iter().collect();
-        assert!(values["worst_relative_residual"] < 1e-9 && values["limit_breaches"] == 0.0);
-        values["discomfort_k"]
+        let values: BTreeMap<String, Option<f64>> =
+            summary.values(experiment.plant.layout()).into_iter().collect();
+        let values = |name: &str| values[name].expect("exists");
+        assert!(values("worst_relative_residual") < 1e-9 && values("limit_breaches") == 0.0);
+        values("discomfort_k")
     };
     // Unheated, the cabin would stay about 22 K too cold.
     let (thermostat_k, hpcu_k) = (discomfort_k("thermostat"), discomfort_k("hpcu"));
@@ -176,4 +178,16 @@ fn a_message_names_the_file_asked_for_and_the_one_that_asked() {
     let own = write("own.toml", "base = \"own.toml\"\n");
     let message = told(&own);
     assert!(message.contains("too long or closed") && message.matches("named by").count() == 1, "{message}");
+}
+
+#[test]
+fn what_a_trip_of_0_km_does_not_have_is_none() {
+    let mut experiment = Experiment::load("jeffs2019/case1-1", None, &[]).expect("built in");
+    experiment.cycle =
+        DriveCycle::from_csv("standing.csv", "time_s,speed_km_h\n0,0\n60,0\n").expect("a cycle");
+    let (summary, _) = experiment.totals();
+    let values: BTreeMap<String, Option<f64>> =
+        summary.values(experiment.plant.layout()).into_iter().collect();
+    assert_eq!((values["distance_km"], values["energy_kwh_per_100_km"]), (Some(0.0), None));
+    assert!(values["energy_kwh"].is_some_and(|energy_kwh| energy_kwh > 0.0));
 }
