@@ -287,12 +287,13 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
         seed = None if seed is None else settings.whole_seed(seed)
         super().reset(seed=seed)
         trips = settings.source(*settings.once(options))
+        fresh = None
         if seed is not None:
-            self._episode.seed(settings.core_seed(seed))
+            fresh = settings.core_seed(seed)
         elif not self._seeded:
-            self._episode.seed(int(self.np_random.integers(2**63)))
+            fresh = int(self.np_random.integers(2**63))
+        observation, info = self._episode.reset(*trips, fresh)
         self._seeded = True
-        observation, info = self._episode.reset(*trips)
         if self._reward is not None:
             self._hide_terms(info)
         if self.render_mode == "human":

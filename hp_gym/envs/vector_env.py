@@ -341,7 +341,7 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         for name in names:
             infos[name], infos[f"_{name}"] = np.zeros(self.num_envs), mask
         if "action_mask" in self._told:
-            masks = self._options(self._core.action_masks().view(np.int8))
+            masks = self._options(self._core.masks().view(np.int8))
             masks[~mask] = 0
             infos["action_mask"], infos["_action_mask"] = masks, mask
         return infos

@@ -272,7 +272,7 @@ impl SignalTable {
             .within(0.0, 1.0)
             .seen(rank::CHARGE),
             function("charge_soc", "-", "state of charge by charge alone", |v| {
-                v.plant.battery.state_of_charge(&v.state.battery)
+                v.plant.battery.charge_left(&v.state.battery)
             })
             .within(0.0, 1.0),
             function("battery_voltage_v", "V", "mean terminal voltage", |v| {
@@ -357,6 +357,17 @@ impl SignalTable {
                 "how the refrigerant solve ended, position in its list of statuses",
                 |v| v.recorded(|r| f64::from(r.refrigeration.status as u8)),
             ),
+            function(
+                "solver_residual",
+                "-",
+                "largest error that the refrigerant solve left: balances in K, the limit that holds in 1 % of its range",
+                |v| v.recorded(|r| r.refrigeration.residual),
+            )
+            .within(0.0, 1e-6),
+            function("solver_bracketed", "-", "1 where the refrigerant solve was by bracketing, not by Newton", |v| {
+                v.recorded(|r| f64::from(u8::from(r.refrigeration.bracketed)))
+            })
+            .within(0.0, 1.0),
             function("cop", "-", "condenser heat flow over compressor power; 0 at rest", |v| {
                 v.recorded(|r| {
                     let power_w = r.flows[Flow::COMPRESSOR];

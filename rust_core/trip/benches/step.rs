@@ -115,7 +115,7 @@ fn network(criterion: &mut Criterion) {
     };
     let ports: Vec<_> = layout.links.iter().map(|link| link.ports).collect();
     let known_first: Vec<_> = layout.inlets.iter().rev().map(|inlet| inlet.supply).collect();
-    let network = PlannedNetwork::new(layout.nodes.len(), &ports, &known_first);
+    let network = PlannedNetwork::new(layout.nodes.len(), &ports, &known_first).expect("small");
     let assemble = |now: &Conditions<'_>, step: &mut PlannedStep| {
         let mut links = [LinkState::OPEN; MAXIMUM_LINKS];
         for (place, link) in links.iter_mut().zip(&layout.links) {

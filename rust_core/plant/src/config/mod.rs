@@ -1,5 +1,6 @@
 //! Configuration: TOML files to typed, checked parameters.
 
+pub mod bounded;
 pub mod initial;
 pub mod kinds;
 pub mod library;

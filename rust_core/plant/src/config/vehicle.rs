@@ -224,7 +224,7 @@ impl Reader<'_> {
                     format!("{}, or be the path of a .toml file", among(&library::names(ARCHITECTURE), name));
                 Violation::new("architecture", format!("`{name}`"), allowed).in_file(self.file)
             }
-            error => error,
+            error => error.named_by(self.file),
         })
     }
 
