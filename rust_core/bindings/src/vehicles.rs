@@ -3,7 +3,7 @@
 use crate::errors::to_python;
 use hp_episode::episode::Episode;
 use hp_episode::rows::{ActionRow, branch_name};
-use hp_plant::architecture::declaration::{Level, MemberKind, Side};
+use hp_plant::architecture::declaration::{Level, Side};
 use hp_plant::architecture::layout::{
     BranchLayout, BranchSide, CabinLayout, ExchangerLayout, ExchangerSide, HeaterLayout, HeaterTarget,
     Layout, LoopLayout, MemberLayout,
@@ -207,7 +207,7 @@ impl Named<'_> {
         json!({
             "name": member.name,
             "label": member.label,
-            "kind": kind_word(member.kind),
+            "kind": member.kind.data().word,
             "temperature": member.node.map(|node| self.temperature(node)),
             "options": options.unwrap_or_default(),
             "connection": member.connection_row.map(|_| format!("{}_connection", member.name)),
@@ -289,17 +289,5 @@ fn crossing_word(crossing: Crossing) -> &'static str {
         Crossing::Enters => "enters",
         Crossing::Leaves => "leaves",
         Crossing::Inside => "inside",
-    }
-}
-
-fn kind_word(kind: MemberKind) -> &'static str {
-    match kind {
-        MemberKind::Battery => "battery",
-        MemberKind::Motor => "motor",
-        MemberKind::Transmission => "transmission",
-        MemberKind::FrontEnd => "front-end",
-        MemberKind::Store => "store",
-        MemberKind::Cabin => "cabin",
-        MemberKind::Plate => "plate",
     }
 }

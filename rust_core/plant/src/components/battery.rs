@@ -5,11 +5,25 @@
 
 use super::battery_tables::{CircuitTable, OpenCircuitVoltageTable, UsableCapacityTable};
 use super::underbody_plate::PlateParameters;
+use crate::architecture::flows::Flow;
+use crate::architecture::kind::{Bounds, ComponentKind, Role};
+use crate::architecture::ranks;
 use crate::config::ZERO_CELSIUS_K;
 use crate::numerics::elementary;
 use crate::numerics::interpolation::{BilinearTable, LinearTable, Segment};
 use crate::parameters;
 use serde::{Deserialize, Serialize};
+
+/// What an architecture has to know of the traction battery.
+pub const KIND: ComponentKind = ComponentKind {
+    word: "battery",
+    role: Some(Role::Battery),
+    section: Some("battery"),
+    loss: Some(Flow::BATTERY_LOSS),
+    temperature: Bounds::new(-40.0, 60.0, ranks::BATTERY),
+    branch_heat_flow: Some(Bounds::branch(10_000.0, 1)),
+    ..ComponentKind::POWERTRAIN
+};
 
 /// Rounds of the fixed point for the mean open-circuit voltage; one suffices within a table segment.
 const VOLTAGE_ROUNDS: usize = 12;

@@ -4,7 +4,7 @@
 //! values it replaces. A relative path inside a file counts from the folder of that file, any other one from the working
 //! folder. Overrides replace single values by dotted key.
 
-use super::{Validate, bounded};
+use super::{Validate, bounded, deserialized, read_value};
 use crate::error::{PlantError, PlantResult};
 use serde::de::DeserializeOwned;
 use std::path::Path;
@@ -163,10 +163,7 @@ pub fn read_section<T: DeserializeOwned + Validate>(
     table: &mut Table,
     section: &str,
 ) -> PlantResult<T> {
-    let value = take(name, table, section)?;
-    let parameters: T = deserialized(name, section, value)?;
-    parameters.validate().map_err(|violation| violation.within(section).in_file(name))?;
-    Ok(parameters)
+    read_value(name, section, take(name, table, section)?)
 }
 
 /// Takes a value out of a file's table.
@@ -177,24 +174,6 @@ pub fn take(name: &str, table: &mut Table, key: &str) -> PlantResult<Value> {
     table
         .remove(key)
         .ok_or_else(|| PlantError::Syntax { file: name.to_owned(), message: format!("`{key}` is missing") })
-}
-
-/// A value as a type, its checks still to come; `section` is where it stands.
-///
-/// # Errors
-/// A key is missing or unknown, or a value is of the wrong type.
-pub fn deserialized<T: DeserializeOwned>(name: &str, section: &str, value: Value) -> PlantResult<T> {
-    serde_path_to_error::deserialize(value).map_err(|error| {
-        let path = error.path().to_string();
-        let inner = error.into_inner().message().to_owned();
-        let place = match (section, path.as_str()) {
-            ("", ".") => String::new(),
-            ("", path) => format!("`{path}`: "),
-            (section, ".") => format!("`{section}`: "),
-            (section, path) => format!("`{section}.{path}`: "),
-        };
-        PlantError::Syntax { file: name.to_owned(), message: format!("{place}{}", inner.trim()) }
-    })
 }
 
 /// What a file itself gives, that of its base left out, with the overrides.
