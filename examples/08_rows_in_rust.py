@@ -66,8 +66,8 @@ def build(folder: Path) -> None:
     """Compiles the extension and puts it into the package; dependencies are kept for the next time."""
     target = ROOT / "target" / "examples-rows"
     settings = {**os.environ, "PYO3_BUILD_EXTENSION_MODULE": "1", "CARGO_TARGET_DIR": str(target)}
-    subprocess.run(["cargo", "build", "-q", "-p", "hp_bindings"], cwd=folder, env=settings, check=True)
-    built = next(path for name in LIBRARIES if (path := target / "debug" / name).exists())
+    subprocess.run(["cargo", "build", "-q", "--release", "-p", "hp_bindings"], cwd=folder, env=settings, check=True)
+    built = next(path for name in LIBRARIES if (path := target / "release" / name).exists())
     suffix = ".pyd" if built.suffix == ".dll" else ".abi3.so"
     shutil.copy2(built, folder / "hp_gym" / f"_core{suffix}")
 
