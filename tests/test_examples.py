@@ -12,7 +12,10 @@ ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = ROOT / "examples"
 
 SHOWN = {
-    "01_a_car_of_your_own": [r"01_a_car_of_your_own: \d+\.\d kWh/100 km, arrived", r"environment of .*\.toml: Mu"],
+    "01_a_car_of_your_own": [
+        r"01_a_car_of_your_own: \d+\.\d kWh/100 km, arrived",
+        r"environment of .*\.toml: Mu",
+    ],
     "02_more_parts": [
         r"actuators: electronics battery_heater cabin_condenser electronics_request electronics_valve",
         *(
@@ -25,7 +28,8 @@ SHOWN = {
         ),
     ],
     "03_another_refrigerant": [
-        rf"{name}: COP \d\.\d\d, [12]\d\.\d bar at most, 0 breaches" for name in ("R134a.*", "R1234yf.*", "R152a.*")
+        rf"{name}: COP \d\.\d\d, [12]\d\.\d bar at most, 0 breaches"
+        for name in ("R134a.*", "R1234yf.*", "R152a.*")
     ],
     "04_controllers": [
         rf"{name}: \d\.\d\d kWh, \d+\.\d K off target"

@@ -12,11 +12,12 @@ if TYPE_CHECKING:
     from hp_gym.envs.settings import Action
     from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
 
+
 def off() -> Controller:
     """Everything isolated and off; ambient air at the blower's lowest level, coolant at the lowest flows.
 
-    It is what the reference trip of the attributable energy is, but with the temperatures that come of it. It moves
-    every actuator, whatever the car has.
+    It is what the reference trip of the attributable energy is, but with the temperatures that come of it. It
+    moves every actuator, whatever the car has.
     """
 
     def begin(env: EVHeatPumpVectorEnv) -> Act:
