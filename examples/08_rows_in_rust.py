@@ -25,8 +25,10 @@ import hp_gym
 from hp_gym import _core
 
 car, controller = sys.argv[1:]
-run = hp_gym.simulate("ours/commute-minus5", controller, vehicle=car)
+uses_it = {"scenario.strategy.converter": True}
+run = hp_gym.simulate("ours/commute-minus5", controller, uses_it, vehicle=car)
 print(run.end_reason, *[name for name in run.columns if "converter" in name])
+print(f"converter cooled to {run['converter_temperature_degc'][-1]:.1f} degC by the rules")
 print(f"pressure ratio up to {run['pressure_ratio'].max():.2f}")
 print(f"ledger within {run.summary['worst_relative_residual']:.0e}")
 env = gym.make("EVHeatPump-v0", vehicle=car, scenario="ours/commute-minus5",

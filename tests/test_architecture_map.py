@@ -1,7 +1,7 @@
 """The map of ARCHITECTURE.md is true, and the code keeps what it promises of itself.
 
-What it promises: a newcomer finds an equation of the paper with at most three look-ups, no function of the core
-is longer than 60 lines, and a single kind of member is spelled out in few files.
+What it promises: a newcomer finds an equation of the paper with at most three look-ups, no function of the
+core is longer than 60 lines, and a single kind of member is spelled out in few files.
 """
 
 import re

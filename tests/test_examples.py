@@ -55,6 +55,7 @@ SHOWN = {
 
 ROWS_SHOWN = [
     r"arrived converter_temperature_degc converter_connection converter_chiller_heat_flow_w",
+    r"converter cooled to -[6-9]\.\d degC by the rules",
     r"pressure ratio up to [1-9]\.\d\d",
     r"ledger within [1-9]e-1\d",
     r"actions: .*converter",
