@@ -1,4 +1,4 @@
-"""A member, a heater and an exchanger more: a row each in an architecture file, a section each in the vehicle's."""
+"""A member, a heater and an exchanger more: rows of an architecture file, sections of the vehicle's."""
 
 from pathlib import Path
 
@@ -20,7 +20,11 @@ def main() -> None:
         return hp_gym.encode(run.experiment, settings, run.rule_based_command())
 
     run = hp_gym.simulate(SCENARIO, controller, vehicle=CAR)
-    for column in ("electronics_chiller_heat_flow_w", "battery_heater_power_w", "cabin_condenser_heat_flow_w"):
+    for column in (
+        "electronics_chiller_heat_flow_w",
+        "battery_heater_power_w",
+        "cabin_condenser_heat_flow_w",
+    ):
         print(f"{column}: {run[column].mean():.0f} W on average")
 
 

@@ -15,7 +15,8 @@ SCENARIO, REWARD, DISTRIBUTION = (
 def main() -> None:
     """Drives the scenario, then trips drawn from the distribution."""
     run = hp_gym.simulate(SCENARIO)
-    print(f"{SCENARIO.name}: {run.end_reason}, {run.summary['energy_kwh']:.2f} kWh by {Path(run.controller).name}")
+    controller = Path(run.controller).name
+    print(f"{SCENARIO.name}: {run.end_reason}, {run.summary['energy_kwh']:.2f} kWh by {controller}")
     env = gym.make("EVHeatPump-v0", distribution=DISTRIBUTION, reward=REWARD)
     for seed in range(3):
         _, info = env.reset(seed=seed)

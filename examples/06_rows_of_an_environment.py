@@ -1,4 +1,4 @@
-"""Rows of an environment by name: what an agent moves, what it sees, what it is paid for, and the settings."""
+"""Rows of an environment by name: what an agent moves, sees and is paid for, and the settings."""
 
 import gymnasium as gym
 
@@ -25,7 +25,10 @@ def main() -> None:
     print("observations:", *[row[0] for row in env.unwrapped._episode.observation_rows()])
     for _ in range(6):
         _, _, _, _, info = env.step(env.action_space.sample())
-    print("parts of the reward:", *[f"{name} {value:.4f}" for name, value in info.items() if name[:6] == "reward"])
+    print(
+        "parts of the reward:",
+        *[f"{name} {value:.4f}" for name, value in info.items() if name[:6] == "reward"],
+    )
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """The five cars of `examples/cars` in one vector environment, under the rules, and a picture of each.
 
-    python examples/07_five_cars.py [FOLDER FOR PICTURES]
+python examples/07_five_cars.py [FOLDER FOR PICTURES]
 """
 
 import sys

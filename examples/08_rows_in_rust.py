@@ -1,7 +1,7 @@
 """Rows in Rust: a kind of component, a rule-based controller, a signal and a term of the reward.
 
-They are added to a copy of the repository, which is built (some minutes the first time) and driven. What is added
-stands in `examples/08_rows_in_rust/rows.toml`, nothing else is touched.
+They are added to a copy of the repository, which is built (some minutes the first time) and driven. What is
+added stands in `examples/08_rows_in_rust/rows.toml`, nothing else is touched.
 
     python examples/08_rows_in_rust.py FOLDER
 """
@@ -25,8 +25,10 @@ import hp_gym
 from hp_gym import _core
 
 car, controller = sys.argv[1:]
-run = hp_gym.simulate("ours/commute-minus5", controller, vehicle=car)
+uses_it = {"scenario.strategy.converter": True}
+run = hp_gym.simulate("ours/commute-minus5", controller, uses_it, vehicle=car)
 print(run.end_reason, *[name for name in run.columns if "converter" in name])
+print(f"converter cooled to {run['converter_temperature_degc'][-1]:.1f} degC by the rules")
 print(f"pressure ratio up to {run['pressure_ratio'].max():.2f}")
 print(f"ledger within {run.summary['worst_relative_residual']:.0e}")
 env = gym.make("EVHeatPump-v0", vehicle=car, scenario="ours/commute-minus5",
@@ -58,7 +60,9 @@ def copy(folder: Path) -> None:
         text = path.read_text(encoding="utf-8")
         anchor = row["behind"] + "\n"
         if text.count(anchor) != 1:
-            sys.exit(f"{row['file']} has {text.count(anchor)} lines `{row['behind'].strip()}`, but must have one")
+            sys.exit(
+                f"{row['file']} has {text.count(anchor)} lines `{row['behind'].strip()}`, but must have one"
+            )
         path.write_text(text.replace(anchor, anchor + row["row"].strip("\n") + "\n"), encoding="utf-8")
 
 
@@ -66,8 +70,10 @@ def build(folder: Path) -> None:
     """Compiles the extension and puts it into the package; dependencies are kept for the next time."""
     target = ROOT / "target" / "examples-rows"
     settings = {**os.environ, "PYO3_BUILD_EXTENSION_MODULE": "1", "CARGO_TARGET_DIR": str(target)}
-    subprocess.run(["cargo", "build", "-q", "-p", "hp_bindings"], cwd=folder, env=settings, check=True)
-    built = next(path for name in LIBRARIES if (path := target / "debug" / name).exists())
+    subprocess.run(
+        ["cargo", "build", "-q", "--release", "-p", "hp_bindings"], cwd=folder, env=settings, check=True
+    )
+    built = next(path for name in LIBRARIES if (path := target / "release" / name).exists())
     suffix = ".pyd" if built.suffix == ".dll" else ".abi3.so"
     shutil.copy2(built, folder / "hp_gym" / f"_core{suffix}")
 

@@ -1,9 +1,10 @@
-"""The cars of `examples/cars`, as files outside the repository, through every door: command line, one environment,
-a vector of all five, pictures and the report's diagrams.
+"""The cars of `examples/cars`, as files outside the repository, through every door.
 
-`pytest tests/test_outside_cars.py --all-climates` drives them in steps of 5 K. What holds at every step: the ledger
-closes, no exchanger runs backwards; over a trip: no limit is breached. `rust_core/trip/tests/vehicles.rs` checks pinch
-and temperature differences of the same cars.
+Command line, one environment, a vector of all five, pictures, the report's diagrams. At every step the ledger
+closes and no exchanger runs backwards; over a trip no limit is breached. `rust_core/trip/tests/vehicles.rs`
+checks pinch and temperature differences of the same cars.
+
+`pytest tests/test_outside_cars.py --all-climates` drives them in steps of 5 K.
 """
 
 import json
@@ -75,7 +76,9 @@ def test_there_are_five_cars_and_each_is_of_another_architecture() -> None:
         "without-heat-pump": 2,
         "without-thermal-battery": 2,
     }
-    rear = [branch["loop"] for branch in layouts["two-cabins"]["branches"] if branch["member"] == "rear_cabin"]
+    rear = [
+        branch["loop"] for branch in layouts["two-cabins"]["branches"] if branch["member"] == "rear_cabin"
+    ]
     assert rear == ["htc", "chiller"]
 
 
