@@ -49,6 +49,14 @@ pub fn caught<T>(work: impl FnOnce() -> PlantResult<T>) -> PlantResult<T> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|payload| Err(internal(&*payload)))
 }
 
+/// Does some work that cannot fail; a panic is an error.
+///
+/// # Errors
+/// [`PlantError::Internal`] where it panicked.
+pub fn done<T>(work: impl FnOnce() -> T) -> PlantResult<T> {
+    caught(|| Ok(work()))
+}
+
 #[cold]
 fn internal(payload: &(dyn Any + Send)) -> PlantError {
     let noted = LAST.lock().unwrap_or_else(PoisonError::into_inner).take();
@@ -98,6 +106,15 @@ impl<T> Guarded<T> {
         let done = catch_unwind(AssertUnwindSafe(|| work(&mut self.value)));
         self.broken = done.is_err();
         done.unwrap_or_else(|payload| Err(internal(&*payload)))
+    }
+
+    /// Changes the value by what cannot fail.
+    ///
+    /// # Errors
+    /// [`PlantError::Internal`] if it panicked, or if something has before.
+    #[inline]
+    pub fn alter<R>(&mut self, work: impl FnOnce(&mut T) -> R) -> PlantResult<R> {
+        self.change(|value| Ok(work(value)))
     }
 
     /// Begins anew, after which the value is sound.
