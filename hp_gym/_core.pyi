@@ -174,7 +174,7 @@ class Episode:
     def reset(
         self, scenario: str | None = None, distribution: str | None = None, seed: int | None = None
     ) -> tuple[_Floats, _Info]:
-        """Begins a trip; a scenario or distribution holds for this one only, a seed starts the random numbers anew."""
+        """Begins a trip; a scenario or distribution holds for it only, a seed starts random numbers anew."""
     def step(self, action: NDArray[Any]) -> tuple[_Floats, float, bool, bool, _Info]:
         """Drives on for one control interval."""
     def action_masks(self) -> _Bools:

@@ -25,18 +25,10 @@ from hp_gym.cli.app import app
 from hp_gym.studies.tuning import ambient_bands, search, tuned_rules
 from hp_gym.studies.tuning.objective import Objective
 
-SMALL = """
-algorithm = "ppo"
-total_decisions = 1024
-checkpoint_interval_decisions = 100_000
-torch_threads = 1
-environments = { number = 8, threads = 1 }
-environment = { control_interval_s = 60 }
-learning_rate = { start = 1e-2 }
-network = { hidden_sizes = [8, 8] }
-validation = { interval_decisions = 512, trips = 2 }
-hyperparameters = { n_steps = 32, batch_size = 128, n_epochs = 2, gamma = 0.9 }
-"""
+sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
+from kill_results import training
+
+SMALL = training(total=1024, checkpoint_interval=100_000, validation_interval=512)
 SAC = [
     "algorithm=sac",
     "environment.continuous=true",

@@ -5,7 +5,7 @@ use crate::errors::{ConfigurationError, gymnasium_error, to_python};
 use crate::vehicles::{ActuatorTuple, DEFAULT_ARCHITECTURE, SignalNames, action_tuple, layout_dict};
 use hp_episode::action::{ActionTable, GROUPS};
 use hp_episode::episode::{self, Clock, Facts, Outcome};
-use hp_episode::guard::{Guarded, caught};
+use hp_episode::guard::{Guarded, caught, done};
 use hp_episode::observation::Observed;
 use hp_episode::reward::{PART_NAMES, Parts, RewardParameters, TERM_NAMES, Terms};
 use hp_episode::rows::RowSet;
@@ -158,7 +158,7 @@ pub struct Episode {
 impl Episode {
     fn observed<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let observation = &mut self.observation;
-        self.inner.change(|episode| Ok(episode.observe(observation))).map_err(to_python)?;
+        self.inner.alter(|episode| episode.observe(observation)).map_err(to_python)?;
         Ok(PyArray1::from_slice(py, &self.observation))
     }
 
@@ -258,13 +258,13 @@ impl Episode {
         let outcome = match actions::read(action, setup, None)? {
             Checked::Values(array) => {
                 let values = array.as_slice()?;
-                self.inner.change(|episode| Ok(episode.step(values)))
+                self.inner.alter(|episode| episode.step(values))
             }
             Checked::Levels(array) => {
                 let levels = array.as_slice()?.iter().enumerate();
                 let values: Vec<f32> =
                     levels.map(|(column, &level)| setup.actions.value(column, level as usize)).collect();
-                self.inner.change(|episode| Ok(episode.step(&values)))
+                self.inner.alter(|episode| episode.step(&values))
             }
         };
         let outcome = outcome.map_err(to_python)?;
@@ -277,7 +277,7 @@ impl Episode {
 
     fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
         self.require_begun(py)?;
-        let mask = caught(|| Ok(mask_of(&self.inner))).map_err(to_python)?;
+        let mask = done(|| mask_of(&self.inner)).map_err(to_python)?;
         Ok(mask.into_pyarray(py))
     }
 
@@ -286,11 +286,11 @@ impl Episode {
         let width = self.inner.setup().actions.rows().len();
         if self.inner.setup().continuous {
             let mut values = vec![0.0; width];
-            self.inner.change(|episode| Ok(episode.rule_based_values(&mut values))).map_err(to_python)?;
+            self.inner.alter(|episode| episode.rule_based_values(&mut values)).map_err(to_python)?;
             Ok(values.into_pyarray(py).into_any())
         } else {
             let mut levels = vec![0; width];
-            self.inner.change(|episode| Ok(episode.rule_based_levels(&mut levels))).map_err(to_python)?;
+            self.inner.alter(|episode| episode.rule_based_levels(&mut levels)).map_err(to_python)?;
             Ok(levels.into_pyarray(py).into_any())
         }
     }

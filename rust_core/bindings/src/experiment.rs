@@ -2,7 +2,7 @@
 
 use crate::errors::{signals, to_python};
 use crate::vehicles::{ActuatorTuple, SignalTuple, actuator_tuple, layout_dict, signal_tuple};
-use hp_episode::guard::{Guarded, caught};
+use hp_episode::guard::{Guarded, caught, done};
 use hp_episode::timing;
 use hp_plant::architecture::layout::Layout;
 use hp_plant::command::Command;
@@ -182,7 +182,7 @@ impl Experiment {
             signals()?;
             check.as_ref().map_or(Ok(()), |check| Python::attach(|py| check.call0(py).map(drop)))
         };
-        let driven = py.detach(|| caught(|| Ok(self.inner.simulate_while(go_on))));
+        let driven = py.detach(|| done(|| self.inner.simulate_while(go_on)));
         let trajectory = driven.map_err(to_python)??;
         let rows = trajectory.values.len() / trajectory.columns;
         let values = trajectory.values.into_pyarray(py).reshape([rows, trajectory.columns])?;
@@ -190,13 +190,13 @@ impl Experiment {
     }
 
     fn totals<'py>(&self, py: Python<'py>) -> PyResult<Totals<'py>> {
-        let driven = py.detach(|| caught(|| Ok(self.inner.totals_while(signals))));
+        let driven = py.detach(|| done(|| self.inner.totals_while(signals)));
         let (summary, end) = driven.map_err(to_python)??;
         Ok((to_dict(py, &summary, self.inner.plant.layout())?, end.name()))
     }
 
     fn start(slf: Py<Self>, py: Python<'_>) -> PyResult<Run> {
-        let run = caught(|| Ok(slf.borrow(py).inner.start())).map_err(to_python)?;
+        let run = done(|| slf.borrow(py).inner.start()).map_err(to_python)?;
         Ok(Run { experiment: slf, inner: Guarded::new(run), ended: None })
     }
 }
@@ -225,7 +225,7 @@ impl Run {
 
     fn rule_based_command<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let experiment = &self.experiment.borrow(py).inner;
-        let command = self.inner.change(|run| Ok(experiment.rule_based_command(run))).map_err(to_python)?;
+        let command = self.inner.alter(|run| experiment.rule_based_command(run)).map_err(to_python)?;
         Ok(command.0[..experiment.plant.ranges.count()].to_vec().into_pyarray(py))
     }
 
@@ -248,7 +248,7 @@ impl Run {
         }
         let mut command = Command::default();
         command.0[..values.len()].copy_from_slice(values);
-        let stepped = self.inner.change(|run| Ok(experiment.inner.step(run, &command)));
+        let stepped = self.inner.alter(|run| experiment.inner.step(run, &command));
         self.ended = stepped.map_err(to_python)?.map(run::EndReason::name);
         Ok(self.ended)
     }
@@ -276,9 +276,8 @@ pub fn totals<'py>(
     vehicle: Option<String>,
 ) -> PyResult<Vec<Totals<'py>>> {
     let overrides = parse_overrides(&overrides)?;
-    let driven = py.detach(|| {
-        caught(|| Ok(hp_episode::totals::totals(&scenarios, vehicle.as_deref(), &overrides, signals)))
-    });
+    let driven = py
+        .detach(|| done(|| hp_episode::totals::totals(&scenarios, vehicle.as_deref(), &overrides, signals)));
     let results = driven.map_err(to_python)??;
     results
         .into_iter()

@@ -8,7 +8,7 @@ use crate::episode::{
 use crate::errors::{ConfigurationError, gymnasium_error, to_python};
 use crate::vehicles::{ActuatorTuple, SignalNames, action_tuple, layout_dict};
 use hp_episode::episode::Episode;
-use hp_episode::guard::{Guarded, caught};
+use hp_episode::guard::{Guarded, done};
 use hp_episode::setup::{Origin, Setup, Source, Told};
 use hp_episode::vector::{self, Actions, ActionsMut, Autoreset, Extras, PARTS, Results, TERMS};
 use hp_plant::error::PlantResult;
@@ -221,7 +221,7 @@ impl Vector {
             let mut values = array.readwrite();
             for (row, &index) in values.as_slice_mut()?.chunks_mut(width).zip(&indices) {
                 self.check_index(index)?;
-                self.inner.change(|all| Ok(all.episodes_mut()[index].observe(row))).map_err(to_python)?;
+                self.inner.alter(|all| all.episodes_mut()[index].observe(row)).map_err(to_python)?;
             }
         }
         Ok(array)
@@ -303,7 +303,7 @@ impl Vector {
         {
             let mut values = array.readwrite();
             for (mask, episode) in values.as_slice_mut()?.chunks_mut(length).zip(self.inner.episodes()) {
-                caught(|| Ok(episode.write_mask(mask))).map_err(to_python)?;
+                done(|| episode.write_mask(mask)).map_err(to_python)?;
             }
         }
         Ok(array)
@@ -318,15 +318,15 @@ impl Vector {
             let array = PyArray2::zeros(py, shape, false);
             let mut values = array.readwrite();
             let values = values.as_slice_mut()?;
-            let work = |all: &mut vector::Vector| Ok(all.rule_based_actions(ActionsMut::Values(values)));
-            py.detach(|| inner.change(work)).map_err(to_python)?;
+            let work = |all: &mut vector::Vector| all.rule_based_actions(ActionsMut::Values(values));
+            py.detach(|| inner.alter(work)).map_err(to_python)?;
             Ok(array.into_any())
         } else {
             let array = PyArray2::zeros(py, shape, false);
             let mut levels = array.readwrite();
             let levels = levels.as_slice_mut()?;
-            let work = |all: &mut vector::Vector| Ok(all.rule_based_actions(ActionsMut::Levels(levels)));
-            py.detach(|| inner.change(work)).map_err(to_python)?;
+            let work = |all: &mut vector::Vector| all.rule_based_actions(ActionsMut::Levels(levels));
+            py.detach(|| inner.alter(work)).map_err(to_python)?;
             Ok(array.into_any())
         }
     }
@@ -425,7 +425,7 @@ impl Vector {
         for &index in &indices {
             self.check_index(index)?;
         }
-        self.inner.change(|all| Ok(all.fork(&indices))).map_err(to_python)
+        self.inner.alter(|all| all.fork(&indices)).map_err(to_python)
     }
 
     fn get_state<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyBytes>> {

@@ -4,24 +4,36 @@
 
 use hp_plant::error::{PlantError, PlantResult};
 use std::any::Any;
+use std::backtrace::Backtrace;
 use std::ops::Deref;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::sync::{Mutex, PoisonError};
 
+/// Crates whose functions tell where a panic was.
+const CRATES: [&str; 2] = ["hp_plant::", "hp_trip::"];
+
 /// Place and words of the last panic of any thread.
 static LAST: Mutex<Option<String>> = Mutex::new(None);
 
-/// Keeps the place of panics for their errors instead of writing it to the error stream, unless `RUST_BACKTRACE` is set.
+/// Keeps the place of panics for their errors; writes them to the error stream too if `RUST_BACKTRACE` is `full`.
 pub fn note_panics() {
     let usual = take_hook();
     set_hook(Box::new(move |panic| {
         let place = panic.location().map(|place| format!(" at {}:{}", place.file(), place.line()));
-        let told = format!("{}{}", words(panic.payload()), place.unwrap_or_default());
+        let told = format!("{}{}{}", words(panic.payload()), place.unwrap_or_default(), within());
         *LAST.lock().unwrap_or_else(PoisonError::into_inner) = Some(told);
-        if std::env::var_os("RUST_BACKTRACE").is_some() {
+        if std::env::var_os("RUST_BACKTRACE").is_some_and(|value| value == "full") {
             usual(panic);
         }
     }));
+}
+
+/// Function of the simulation that something else was called from: a panic's own place is often one of the library.
+fn within() -> String {
+    let trace = Backtrace::force_capture().to_string();
+    let own = |name: &&str| CRATES.iter().any(|krate| name.starts_with(krate));
+    let names = trace.lines().filter_map(|line| line.split_once(": ")).map(|(_, name)| name.trim());
+    names.into_iter().find(own).map(|name| format!(", in {name}")).unwrap_or_default()
 }
 
 fn words(payload: &(dyn Any + Send)) -> &str {
@@ -35,6 +47,14 @@ fn words(payload: &(dyn Any + Send)) -> &str {
 /// Those of the work, and [`PlantError::Internal`] where it panicked.
 pub fn caught<T>(work: impl FnOnce() -> PlantResult<T>) -> PlantResult<T> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|payload| Err(internal(&*payload)))
+}
+
+/// Does some work that cannot fail; a panic is an error.
+///
+/// # Errors
+/// [`PlantError::Internal`] where it panicked.
+pub fn done<T>(work: impl FnOnce() -> T) -> PlantResult<T> {
+    caught(|| Ok(work()))
 }
 
 #[cold]
@@ -86,6 +106,15 @@ impl<T> Guarded<T> {
         let done = catch_unwind(AssertUnwindSafe(|| work(&mut self.value)));
         self.broken = done.is_err();
         done.unwrap_or_else(|payload| Err(internal(&*payload)))
+    }
+
+    /// Changes the value by what cannot fail.
+    ///
+    /// # Errors
+    /// [`PlantError::Internal`] if it panicked, or if something has before.
+    #[inline]
+    pub fn alter<R>(&mut self, work: impl FnOnce(&mut T) -> R) -> PlantResult<R> {
+        self.change(|value| Ok(work(value)))
     }
 
     /// Begins anew, after which the value is sound.

@@ -186,7 +186,7 @@ impl Experiment {
             if let Some(reason) = end {
                 return Ok((run.summary, reason));
             }
-            if run.steps % between_checks == 0 {
+            if run.steps.is_multiple_of(between_checks) {
                 go_on()?;
             }
         }
