@@ -85,7 +85,8 @@ def to_json(**chosen: Unpack[Keywords]) -> str:
         info = (*info, "terms")
     for name, value in chosen.items():
         if name not in NAMES:
-            message = f"there is no setting `{name}`; there are {', '.join(NAMES)}"
+            # In Python's words: libraries that try arguments, as TorchRL does, look for them.
+            message = f"got an unexpected keyword argument '{name}'; there are {', '.join(NAMES)}"
             raise TypeError(message)
         read = _READERS.get(name)
         settings.update({name: value} if read is None else read(value))
@@ -216,6 +217,13 @@ def once(options: Mapping[str, Any] | None, extra: Sequence[str] = ()) -> tuple[
             message = f"unknown reset option `{key}`; available: {', '.join(known)}"
             raise _core.ConfigurationError(message)
     return options.get("scenario"), options.get("distribution")
+
+
+def to_scalars(info: dict[str, Any]) -> None:
+    """Makes numbers of an info NumPy's: TorchRL's reader of infos asks for their `dtype`."""
+    for name, value in info.items():
+        if type(value) is float:
+            info[name] = np.float64(value)
 
 
 class _Rows(Protocol):
