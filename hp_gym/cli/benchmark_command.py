@@ -16,8 +16,8 @@ def benchmark(
         typer.Argument(
             metavar="[CONTROLLER]...",
             help="off, random, ptc-only, hpcu, hpcu-best-mode, hpcu-tuned, ppo, a policy file (.zip if "
-            "allowed), a controller file, or module:Class; all named ones by default. The rules that others are "
-            "compared with always run.",
+            "allowed), a controller file, or module:Class; all named ones by default. The rules that others "
+            "are compared with always run.",
             show_default=False,
         ),
     ] = None,
@@ -68,7 +68,8 @@ def warn_of_code(files: Collection[str]) -> None:
     from hp_gym.agents.policies.sb3_zip import WARNING
 
     progress_console.print(
-        f"Warning: {WARNING}. Taken as trained with an id's defaults, a decision a second: {', '.join(files)}.",
+        f"Warning: {WARNING}. Taken as trained with an id's defaults, a decision a second: "
+        f"{', '.join(files)}.",
         soft_wrap=True,
         markup=False,
     )

@@ -296,7 +296,6 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
         self._seeded = True
         if self._reward is not None:
             self._hide_terms(info)
-        settings.to_scalars(info)
         if self.render_mode == "human":
             self.render()
         return observation, info
@@ -315,7 +314,6 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
             observation, _, terminated, truncated, info = result
             result = observation, rewards.one(self._reward, info), terminated, truncated, info
             self._hide_terms(info)
-        settings.to_scalars(result[-1])
         if self.render_mode == "human":
             self.render()
         return result

@@ -219,13 +219,6 @@ def once(options: Mapping[str, Any] | None, extra: Sequence[str] = ()) -> tuple[
     return options.get("scenario"), options.get("distribution")
 
 
-def to_scalars(info: dict[str, Any]) -> None:
-    """Makes numbers of an info NumPy's: TorchRL's reader of infos asks for their `dtype`."""
-    for name, value in info.items():
-        if type(value) is float:
-            info[name] = np.float64(value)
-
-
 class _Rows(Protocol):
     """An environment of the core, single or vector."""
 

@@ -37,13 +37,16 @@ _REWARD_TERMS: Final = (
 )
 
 
-def measure(controller: Controller, scenario: Scenario, trip: _core.FinishedTrip) -> dict[str, Any]:
+def measure(
+    controller: Controller, scenario: Scenario, trip: _core.FinishedTrip, layout: Mapping[str, Any]
+) -> dict[str, Any]:
     """Returns the KPIs of a trip that has ended.
 
     Args:
         controller: Who drove.
         scenario: What was driven.
         trip: How it went.
+        layout: What its vehicle is made of.
     """
     terms, totals = trip.kpis, trip.summary
     distance_km = totals["distance_km"]
@@ -53,7 +56,7 @@ def measure(controller: Controller, scenario: Scenario, trip: _core.FinishedTrip
         "attributable_energy_kwh_per_100_km": _quotient(
             100.0 * terms["attributable_energy_kwh"], distance_km
         ),
-        **energies_kwh(totals, env.layout(index)),
+        **energies_kwh(totals, layout),
         # A full battery at this trip's consumption of charge.
         "range_km": _quotient(100.0 * distance_km, charge_used_pct),
         "comfortable_share_pct": 100.0 * totals["comfortable_share"],

@@ -73,16 +73,14 @@ pub fn step_info<'py>(
     mask: impl FnOnce() -> Vec<bool>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let info = PyDict::new(py);
-    for (name, part) in PART_NAMES.iter().zip(parts) {
-        info.set_item(PyString::intern(py, name), part)?;
-    }
-    if told.contains(&Told::Cost) {
-        info.set_item(intern!(py, "cost"), terms.cost())?;
-    }
-    if told.contains(&Told::Terms) {
-        for (name, value) in TERM_NAMES.iter().zip(terms.values()) {
-            info.set_item(PyString::intern(py, name), value)?;
-        }
+    let cost = told.contains(&Told::Cost).then(|| ("cost", terms.cost()));
+    let counted = if told.contains(&Told::Terms) { TERM_NAMES } else { &[] };
+    let names = PART_NAMES.iter().copied().zip(parts.iter().copied()).chain(cost);
+    let values: Vec<(&str, f64)> = names.chain(counted.iter().copied().zip(terms.values())).collect();
+    // Readers of infos ask for a `dtype`: items of an array are NumPy's own numbers.
+    let array = PyArray1::from_iter(py, values.iter().map(|(_, value)| *value));
+    for (place, (name, _)) in values.iter().enumerate() {
+        info.set_item(PyString::intern(py, name), array.get_item(place)?)?;
     }
     if told.contains(&Told::ActionMask) {
         let mask: Vec<i8> = mask().into_iter().map(i8::from).collect();
