@@ -483,7 +483,26 @@ mod tests {
 
     #[test]
     fn rows_show_the_signals_of_their_names_in_any_order() {
-        let (actions, table) = tables(&["jeffs2019"], &[DEFAULT_GROUP]);
+        rows_show_their_signals(&["jeffs2019"], "default", &[DEFAULT_GROUP]);
+    }
+
+    /// More rows than [`USUAL_ROWS`], backwards, with those of cars whose members this one lacks.
+    #[test]
+    fn rows_show_their_signals_however_many_there_are() {
+        let cars = ["three-loops", "cabin-condenser", "direct", "low-temperature-radiator", "jeffs2019"];
+        let set = rows_of(&cars);
+        let actions = ActionTable::new(&["all".to_owned()], &set, &BTreeMap::new()).expect("built in");
+        let names: Vec<String> = all(&set, &actions).into_iter().rev().map(|row| row.name).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        assert!(names.len() > USUAL_ROWS, "{}", names.len());
+        rows_show_their_signals(&cars, "all", &names);
+    }
+
+    fn rows_show_their_signals(architectures: &[&str], group: &str, names: &[&str]) {
+        let set = rows_of(architectures);
+        let actions = ActionTable::new(&[group.to_owned()], &set, &BTreeMap::new()).expect("built in");
+        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+        let table = ObservationTable::new(&names, &set, &actions).expect("built in");
         let experiment = Experiment::load("jeffs2019/case1-4", None, &[]).expect("built in");
         let fitted_actions = FittedActions::of(&actions, experiment.plant.layout());
         let fitted = FittedObservations::of(&table, &experiment.plant, &fitted_actions);
