@@ -16,8 +16,8 @@ def main() -> None:
         run = hp_gym.simulate(SCENARIO, vehicle=car)
         print(f"{name}: {run.summary['energy_kwh_per_100_km']:.1f} kWh/100 km, {run.end_reason}")
     env = gym.make("EVHeatPump-v0", vehicle=CAR, scenario=SCENARIO)
-    _, info = env.reset(seed=0)
-    print(f"environment of {Path(info['vehicle']).name}: {env.action_space}")
+    env.reset(seed=0)
+    print(f"environment of {Path(env.unwrapped.trip()['vehicle']).name}: {env.action_space}")
 
 
 if __name__ == "__main__":

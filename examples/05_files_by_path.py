@@ -19,14 +19,15 @@ def main() -> None:
     print(f"{SCENARIO.name}: {run.end_reason}, {run.summary['energy_kwh']:.2f} kWh by {controller}")
     env = gym.make("EVHeatPump-v0", distribution=DISTRIBUTION, reward=REWARD)
     for seed in range(3):
-        _, info = env.reset(seed=seed)
+        env.reset(seed=seed)
         score, over = 0.0, False
         while not over:
-            _, reward, over, _, last = env.step(env.unwrapped.rule_based_action())
+            _, reward, over, _, _ = env.step(env.unwrapped.rule_based_action())
             score += float(reward)
+        trip, kpis = env.unwrapped.trip(), env.unwrapped.kpis()
         print(
-            f"trip {seed}: {info['cycle']} at {info['ambient_temperature_degc']:.0f} degC, "
-            f"{last['kpis']['discomfort_k']:.1f} K off target, {score:.0f} points"
+            f"trip {seed}: {trip['cycle']} at {trip['ambient_temperature_degc']:.0f} degC, "
+            f"{kpis['discomfort_k']:.1f} K off target, {score:.0f} points"
         )
 
 

@@ -205,7 +205,7 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     | `action_options`     | `None`       | options of choices by name, in an order of one's own             |
     | `observations`       | `"default"`  | names of rows or groups (`"default"`, `"preview"`)               |
     | `observation_bounds` | `None`       | lowest and highest value of rows by name, for a wider car        |
-    | `info`               | `()`         | what infos also hold: `cost`, `action_mask`, `terms`             |
+    | `info`               | `[]`         | what infos also hold: `cost`, `action_mask`, `terms`             |
     | `reward`             | `"balanced"` | name or path of a reward, a mapping of weights, or a function    |
     | `control_interval_s` | `1`          | seconds for which an action is held                              |
     | `sensor_noise`       | `0.0` (none) | standard deviation on measured rows, in units of half the range  |

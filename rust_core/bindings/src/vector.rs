@@ -122,6 +122,20 @@ impl Vector {
         Ok(())
     }
 
+    /// Whether no trip is over that must be reset by hand.
+    fn require_reset(&self, py: Python<'_>) -> PyResult<()> {
+        if self.autoreset == Autoreset::Disabled && self.inner.over().contains(&true) {
+            let over = self.inner.over().iter().enumerate().filter(|(_, over)| **over);
+            let over: Vec<String> = over.map(|(index, _)| index.to_string()).collect();
+            let message = format!(
+                "the trips of environments {} have ended; call reset(options={{\"reset_mask\": ...}})",
+                over.join(", ")
+            );
+            return Err(gymnasium_error(py, "ResetNeeded", &message));
+        }
+        Ok(())
+    }
+
     fn check_index(&self, index: usize) -> PyResult<()> {
         let count = self.inner.episodes().len();
         if index >= count {
@@ -229,15 +243,7 @@ impl Vector {
 
     fn step<'py>(&mut self, py: Python<'py>, action: &Bound<'py, PyAny>) -> PyResult<Outcomes> {
         self.require_ready(py)?;
-        if self.autoreset == Autoreset::Disabled && self.inner.over().contains(&true) {
-            let over = self.inner.over().iter().enumerate().filter(|(_, over)| **over);
-            let over: Vec<String> = over.map(|(index, _)| index.to_string()).collect();
-            let message = format!(
-                "the trips of environments {} have ended; call reset(options={{\"reset_mask\": ...}})",
-                over.join(", ")
-            );
-            return Err(gymnasium_error(py, "ResetNeeded", &message));
-        }
+        self.require_reset(py)?;
         let count = self.inner.episodes().len();
         let checked = actions::read(action, &self.setup, Some(count))?;
         let observations = PyArray2::zeros(py, [count, self.width()], false);

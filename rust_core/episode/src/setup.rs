@@ -229,7 +229,9 @@ impl Setup {
         let narrow = vehicles.iter().flat_map(|experiment| {
             limits::narrow(&observations, &experiment.scenario.vehicle, &experiment.plant.vehicle)
         });
-        let narrow: Vec<Narrow> = narrow.collect();
+        // Whoever gives bounds means them.
+        let chosen = &settings.observation_bounds;
+        let narrow: Vec<Narrow> = narrow.filter(|narrow| !chosen.contains_key(&narrow.row)).collect();
         let setup = Self {
             vehicle: settings.vehicle.clone(),
             continuous: settings.continuous,
