@@ -24,6 +24,7 @@ __all__ = [
     "architecture_layout",
     "config_text",
     "default_settings",
+    "looks_deep",
     "names",
     "observation_table",
     "plant_step_seconds",
@@ -377,6 +378,9 @@ def signals(name: str = ...) -> _Signals:
 
 def actuators(name: str = ...) -> _Actuators:
     """Name, unit, options (empty for levels) and description of every actuator of an architecture."""
+
+def looks_deep(text: str) -> bool:
+    """Whether a TOML text goes deeper than any file may, found without parsing it."""
 
 def names(kind_word: str) -> list[str]:
     """Names of the compiled-in files of a kind: `scenario`, `vehicle`, `architecture`, `drive cycle`, ..."""

@@ -99,6 +99,12 @@ mod _core {
         Ok(library::names(kind(kind_word)?))
     }
 
+    /// Whether a TOML text goes deeper than any file may, found without parsing it.
+    #[pyfunction]
+    fn looks_deep(text: &str) -> bool {
+        hp_plant::config::bounded::looks_deep(text)
+    }
+
     /// Text of a configuration file by name or path.
     #[pyfunction]
     fn config_text(kind_word: &str, name: &str) -> PyResult<String> {

@@ -91,9 +91,10 @@ fn too_deep() -> String {
     format!("more than {DEEPEST} tables or lists within each other")
 }
 
-/// Whether brackets and dotted keys go so deep that the parser's stack might not be enough: it bounds each of them, but not
-/// both together. Never true of what has an allowed depth.
-fn looks_deep(text: &str) -> bool {
+/// Whether brackets and dotted keys go so deep that a parser should not see them. The one of Rust bounds each, but not both
+/// together, and that of Python takes a time that grows with the square. Never true of what has an allowed depth.
+#[must_use]
+pub fn looks_deep(text: &str) -> bool {
     // One more for a number's point; headers and what stands below them count for themselves.
     let most = DEEPEST + 1;
     let mut rest = text.as_bytes();
