@@ -1,6 +1,6 @@
 //! What rows do that the agent does not control: what the rule-based controller would ask of them.
 
-use crate::action::FittedActions;
+use crate::action::{FittedActions, effective_recirculation};
 use hp_plant::architecture::declaration::Level;
 use hp_plant::architecture::layout::{
     CABIN_PLACES, EXCHANGER_PLACES, ExchangerSide, FRONT_END_PLACES, Layout,
@@ -47,6 +47,8 @@ struct CabinDefaults {
     count: u8,
     heating_recirculation: f32,
     cooling_recirculation: f32,
+    /// What of them is recirculated with the occupants that a trip has, while it is heated and cooled.
+    effective: [f64; 2],
 }
 
 /// A front-end exchanger's request, which is unlimited while heat is to be rejected.
@@ -83,18 +85,25 @@ impl Defaults {
         let (settings, roles) = (experiment.rules.constant_settings(), experiment.rules.roles());
         let mut demand = experiment.commander.requested(0.0);
         settings.enter(CabinMode::Heating, roles, &mut demand);
+        let command = ranges.encode(&demand);
         let (mut asks, mut asked) = ([Ask::default(); ASKS], 0);
         let mut cabins = [CabinDefaults::default(); CABIN_PLACES];
         for (place, cabin) in layout.cabins.iter().enumerate() {
             let own = cooling(layout, place);
             asks[asked..asked + own.len()].copy_from_slice(&own);
             let normalised = |share: f64| ranges.normalise(cabin.recirculation_row, share);
+            let blower = command.0[cabin.blower_row];
+            let share_of = |share: f64| {
+                let occupants = experiment.disturbance(0).occupants;
+                effective_recirculation(&experiment.plant, occupants, place, blower, normalised(share))
+            };
             cabins[place] = CabinDefaults {
                 recirculation_row: cabin.recirculation_row as u8,
                 first: asked as u8,
                 count: own.len() as u8,
                 heating_recirculation: normalised(settings.heating_recirculation),
                 cooling_recirculation: normalised(settings.cooling_recirculation),
+                effective: [settings.heating_recirculation, settings.cooling_recirculation].map(share_of),
             };
             asked += own.len();
         }
@@ -113,7 +122,7 @@ impl Defaults {
             layout.actuators.iter().enumerate().filter(|(_, row)| matches!(row.purpose, Purpose::Request(_)));
         let changing = experiment.commander.requests_change();
         Self {
-            command: ranges.encode(&demand),
+            command,
             cabins,
             cabin_count: layout.cabins.len() as u8,
             rejections,
@@ -134,6 +143,13 @@ impl Defaults {
     pub fn recirculation(&self, cabin: usize, cooling: bool) -> f32 {
         let cabin = &self.cabins[cabin];
         if cooling { cabin.cooling_recirculation } else { cabin.heating_recirculation }
+    }
+
+    /// Share of a cabin's air that is recirculated while it is cooled or not, fresh air for its occupants held back.
+    #[must_use]
+    #[inline]
+    pub fn effective_recirculation(&self, cabin: usize, cooling: bool) -> f64 {
+        self.cabins[cabin].effective[usize::from(cooling)]
     }
 
     /// The whole command for values of the selected rows.

@@ -502,7 +502,7 @@ mod tests {
         let set = rows_of(architectures);
         let actions = ActionTable::new(&[group.to_owned()], &set, &BTreeMap::new()).expect("built in");
         let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
-        let table = ObservationTable::new(&names, &set, &actions).expect("built in");
+        let table = ObservationTable::new(&names, &set, &actions, &BTreeMap::new()).expect("built in");
         let experiment = Experiment::load("jeffs2019/case1-4", None, &[]).expect("built in");
         let fitted_actions = FittedActions::of(&actions, experiment.plant.layout());
         let fitted = FittedObservations::of(&table, &experiment.plant, &fitted_actions);
