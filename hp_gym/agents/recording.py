@@ -14,7 +14,6 @@ import numpy as np
 
 import hp_gym
 from hp_gym import extras, transactions
-from hp_gym.agents.controllers import Controller, ControllerError, resolve
 from hp_gym.envs import settings
 from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
 from hp_gym.messages import OneLineError
@@ -24,12 +23,12 @@ with extras.needed("data"):
     from minari.data_collector.episode_buffer import EpisodeBuffer
     from minari.dataset.minari_storage import MinariStorage
 
+    from hp_gym.agents.controllers import Controller, ControllerError, resolve
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator
 
     from numpy.typing import NDArray
-
-    from hp_gym.envs.settings import Action
 
 AUTHOR: Final = "hp_gym contributors"
 LICENSE: Final = "MIT"
@@ -164,7 +163,7 @@ def _trips(controller: Controller, request: Request, first: int, count: int) -> 
         seen, told, asked, paid = [observations], [_values(infos)], [], []
         lengths, arrived = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.bool_)
         while not lengths.all():
-            actions: Action = np.array(act(observations))
+            actions: Any = np.array(act(observations))
             observations, rewards, terminated, truncated, infos = envs.step(actions)
             seen.append(observations)
             told.append(_values(infos))
