@@ -1,6 +1,6 @@
 """The compiled core of `hp_gym` (rust_core/bindings)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Final, TypeAlias, final
 
 import numpy as np
@@ -12,6 +12,7 @@ __all__ = [
     "Episode",
     "Experiment",
     "FinishedTrip",
+    "InternalError",
     "Outcomes",
     "Run",
     "StateError",
@@ -48,6 +49,9 @@ class ConfigurationError(ValueError):
 
 class StateError(ConfigurationError):
     """A saved state that is damaged, or of something else."""
+
+class InternalError(RuntimeError):
+    """A mistake of this package; what was worked on is refused until it is reset or restored."""
 
 @final
 class Experiment:
@@ -114,8 +118,13 @@ class Experiment:
         """Limits that a run is judged by: comfort band, loop supplies, condensing pressure."""
     def encode(self, settings: dict[str, float | str]) -> NDArray[np.float32]:
         """Command of named actuators in physical units; the others have their defaults."""
-    def simulate(self) -> tuple[NDArray[np.float64], dict[str, float], str]:
-        """Runs with the rule-based controller: a row of signals a second, totals, reason of the end."""
+    def simulate(
+        self, check: Callable[[], object] | None = None
+    ) -> tuple[NDArray[np.float64], dict[str, float], str]:
+        """Runs with the rule-based controller: a row of signals a second, totals, reason of the end.
+
+        Signals are seen on the way; `check` is called every now and then, and what it raises ends the run.
+        """
     def totals(self) -> tuple[dict[str, float], str]:
         """Runs with the rule-based controller: totals and reason of the end only."""
     def start(self) -> Run:
@@ -162,10 +171,10 @@ class Episode:
         """Names of all signals of the vehicle of the trip."""
     def layout(self) -> dict[str, Any]:
         """What the vehicle of the trip is made of."""
-    def seed(self, seed: int) -> None:
-        """Starts the random numbers anew."""
-    def reset(self, scenario: str | None = None, distribution: str | None = None) -> tuple[_Floats, _Info]:
-        """Begins a trip; a scenario or distribution holds for this one only."""
+    def reset(
+        self, scenario: str | None = None, distribution: str | None = None, seed: int | None = None
+    ) -> tuple[_Floats, _Info]:
+        """Begins a trip; a scenario or distribution holds for it only, a seed starts random numbers anew."""
     def step(self, action: NDArray[Any]) -> tuple[_Floats, float, bool, bool, _Info]:
         """Drives on for one control interval."""
     def action_masks(self) -> _Bools:
@@ -285,6 +294,8 @@ class Vector:
         """Drives all environments on for one control interval."""
     def action_masks(self) -> _Bools:
         """Options that would be granted in the coming second, one row an environment."""
+    def masks(self) -> _Bools:
+        """The same, all options where no trip has begun."""
     def rule_based_actions(self) -> NDArray[Any]:
         """What the rule-based controllers would do next, one row an environment."""
     def option_counts(self) -> list[int]:

@@ -29,12 +29,12 @@ _VARIANTS: Final[Mapping[str, tuple[tuple[str, str], Mapping[str, Any]]]] = {
 
 
 def ids() -> tuple[str, ...]:
-    """Returns all ids: the variants, then one for each distribution of trips, `EVHeatPump/<name>-v<version>`."""
+    """Returns all ids: the variants, then for each distribution of trips `EVHeatPump/<name>-v<version>`."""
     return (*_VARIANTS, *(f"EVHeatPump/{name}" for name in _core.names("distribution of episodes")))
 
 
 def register_envs() -> None:
-    """Makes the environments known to `gymnasium.make` and `gymnasium.make_vec`; repeated calls do nothing."""
+    """Makes the environments known to `gymnasium.make` and `make_vec`; repeated calls do nothing."""
     for env_id in ids():
         if env_id in registry:
             continue

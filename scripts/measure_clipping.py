@@ -82,11 +82,11 @@ def clipped(
             observations = summary["duration_s"] + 1.0
             seen += observations
             any_row += observations * summary["clipped_share"]
-            rows.update({row: observations * share for row, share in envs.clipped_shares(index).items()})  # type: ignore[arg-type]
+            rows.update({row: observations * share for row, share in envs.clipped_shares(index).items()})
         if ended.any() and step < steps - 1:
             envs.reset(options={"reset_mask": ended.copy()})
     envs.close()
-    return any_row / seen, Counter({row: value / seen for row, value in rows.items() if value > 0.0})  # type: ignore[arg-type]
+    return any_row / seen, Counter({row: value / seen for row, value in rows.items() if value > 0.0})
 
 
 def main() -> None:

@@ -56,10 +56,11 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
       the compressor is off below -0.9.
     - `EVHeatPumpFlat-v0`: `Discrete`, one choice among modes (`hp_gym.envs.modes.MODES`, or `modes=`).
     - `EVHeatPumpMO-v0`: as the default, its reward a vector.
-    - `EVHeatPump/train-v1`, `EVHeatPump/test-v0`, ...: as the default, on the trips of one distribution. Other rows of the actuator table (`hp_gym.command.ACTUATORS`:
-    shares of recirculated air, blower, coolant flows, requested heat flows, valves, set point of the PTC) can
-    be added by name; as levels they have 11. A row that the agent does not control does what scenario and
-    rule-based controller give it.
+    - `EVHeatPump/train-v1`, `EVHeatPump/test-v0`, ...: as the default, on the trips of one distribution.
+
+    Other rows of the actuator table (`hp_gym.command.ACTUATORS`: shares of recirculated air, blower, coolant
+    flows, requested heat flows, valves, set point of the PTC) can be added by name; as levels they have 11. A
+    row that the agent does not control does what scenario and rule-based controller give it.
 
     `action_masks()` marks the options that the plant would grant in the coming second, flat, as MaskablePPO
     of sb3-contrib expects.
@@ -150,17 +151,17 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
       outside its window and for stops of the compressor that a protection forced.
 
     `reward` chooses among `balanced`, `energy`, `comfort`, `stored-heat` and `durable`, a file, or single
-    weights (`{"base": "balanced", "discomfort_per_k_h": 8.0}`). A Python function of named parts is a reward too
-    (`hp_gym.envs.rewards.Reward`); in `EVHeatPumpMO-v0` the reward is the vector of the four parts.
+    weights (`{"base": "balanced", "discomfort_per_k_h": 8.0}`). A Python function of named parts is a reward
+    too (`hp_gym.envs.rewards.Reward`); in `EVHeatPumpMO-v0` the reward is the vector of the four parts.
 
     ## Info
 
     Numbers, the same keys at every reset and step: the four parts of the reward (0 at a reset). On request
     (`info=["cost", "action_mask", "terms"]`) also
 
-    - `cost`, for agents that are held to a limit: K h between cabin and 22 degC while somebody is in the car, K h
-      of the battery outside its window, and 1 for each stop of the compressor that a protection forced and for a
-      trip that ends before arrival;
+    - `cost`, for agents that are held to a limit: K h between cabin and 22 degC while somebody is in the car,
+      K h of the battery outside its window, and 1 for each stop of the compressor that a protection forced
+      and for a trip that ends before arrival;
     - `action_mask`: `action_masks()` as int8;
     - the terms in physical units that reward and KPIs are counted from.
 
@@ -286,15 +287,15 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
         seed = None if seed is None else settings.whole_seed(seed)
         super().reset(seed=seed)
         trips = settings.source(*settings.once(options))
+        fresh = None
         if seed is not None:
-            self._episode.seed(settings.core_seed(seed))
+            fresh = settings.core_seed(seed)
         elif not self._seeded:
-            self._episode.seed(int(self.np_random.integers(2**63)))
+            fresh = int(self.np_random.integers(2**63))
+        observation, info = self._episode.reset(*trips, fresh)
         self._seeded = True
-        observation, info = self._episode.reset(*trips)
         if self._reward is not None:
             self._hide_terms(info)
-        settings.to_scalars(info)
         if self.render_mode == "human":
             self.render()
         return observation, info
@@ -303,8 +304,8 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
         """Drives on for one control interval.
 
         Raises:
-            ValueError: The action has the wrong shape or holds a value that is not allowed, or the reward that
-                was given as a function is not one finite number.
+            ValueError: The action has the wrong shape or holds a value that is not allowed, or the reward
+                that was given as a function is not one finite number.
             TypeError: The action is of the wrong type.
             ResetNeeded: No trip has begun, or it has ended.
         """
@@ -313,7 +314,6 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
             observation, _, terminated, truncated, info = result
             result = observation, rewards.one(self._reward, info), terminated, truncated, info
             self._hide_terms(info)
-        settings.to_scalars(result[-1])
         if self.render_mode == "human":
             self.render()
         return result
@@ -396,11 +396,11 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
         return self._episode.trip()
 
     def end_reason(self) -> str | None:
-        """Returns why the trip is over: `arrived`, `unserved_energy` or `battery_empty`; None while it is not."""
+        """Returns `arrived`, `unserved_energy` or `battery_empty` once the trip is over, None before."""
         return self._episode.end_reason()
 
     def clipped_shares(self) -> dict[str, float]:
-        """Returns the share of this trip's observations in which each row was beyond its bounds, and held there."""
+        """Returns the share of this trip's observations in which each row was beyond its bounds."""
         return self._episode.clipped_shares()
 
     def kpis(self) -> dict[str, float]:

@@ -23,8 +23,8 @@ class EVHeatPumpFlatEnv(EVHeatPumpEnv):
     """An `EVHeatPumpEnv` whose action is the number of a mode, `Discrete`.
 
     Args:
-        modes: What can be chosen, options by the names of actions; those of `MODES` that the vehicle can do by
-            default.
+        modes: What can be chosen, options by the names of actions; by default those of `MODES` that the
+            vehicle can do.
         **chosen: Arguments of `EVHeatPumpEnv`.
 
     Raises:
@@ -52,8 +52,8 @@ class EVHeatPumpFlatEnv(EVHeatPumpEnv):
             TypeError: It is no whole number.
             ResetNeeded: No trip has begun, or it has ended.
         """
-        *results, info = super().step(self._modes.actions(action, ()))
-        return (*results, self._of_modes(info))
+        observation, reward, terminated, truncated, info = super().step(self._modes.actions(action, ()))
+        return observation, reward, terminated, truncated, self._of_modes(info)
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Marks the modes of which the plant would grant every connection."""
@@ -93,7 +93,7 @@ class EVHeatPumpFlatVectorEnv(EVHeatPumpVectorEnv):
     ) -> tuple[
         NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]
     ]:
-        """Drives all environments on for one control interval, each in its mode; errors as in `EVHeatPumpFlatEnv`."""
+        """Drives all environments on for one control interval; errors as in `EVHeatPumpFlatEnv`."""
         return super().step(self._modes.actions(actions, (self.num_envs,)))
 
     def action_masks(self) -> NDArray[np.bool_]:

@@ -115,10 +115,9 @@ class Modes:
         Args:
             masks: Options action by action, one row an environment if there are many.
         """
-        granted: NDArray[Any] = masks[..., self._starts + self._actions].all(axis=-1)
-        return granted.astype(masks.dtype)
+        return np.asarray(masks[..., self._starts + self._actions].all(axis=-1), dtype=masks.dtype)
 
-    def nearest(self, actions: NDArray[np.int64]) -> NDArray[np.int64]:
+    def nearest(self, actions: NDArray[Any]) -> NDArray[np.int64]:
         """Returns the modes that differ least from choices for each component."""
         apart = np.abs(actions[..., None, :] - self._actions) / self._spans
         nearest: NDArray[np.int64] = np.minimum(apart, 1.0).sum(axis=-1).argmin(axis=-1)

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from gymnasium import spaces
-from numpy.typing import NDArray
 
 from hp_gym import _core
 from hp_gym.envs import settings
 from hp_gym.envs.env import EVHeatPumpEnv
 from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 OBJECTIVES: Final = settings.PARTS
 """What the entries of a reward are, in points; their sum is the reward of `EVHeatPump-v0`."""
@@ -24,7 +26,9 @@ def _reward_space() -> spaces.Box[np.float64]:
 
 def _refuse_function(chosen: dict[str, Any]) -> None:
     if callable(chosen.get("reward")):
-        message = "reward is a function, but must be a name, a path or weights: here the reward is the vector of its parts"
+        message = (
+            "reward is a function, but must be a name, a path or weights: here it is the vector of its parts"
+        )
         raise _core.ConfigurationError(message)
 
 

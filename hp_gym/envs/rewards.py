@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 Reward: TypeAlias = Callable[[Mapping[str, Any]], Any]
-"""A reward as a function of named parts: those of the built-in reward in points (`reward_energy`, ...) and the
-terms that they are counted from in physical units (`chemical_energy_kwh`, `discomfort_k_h`, ...), each of one
-control interval. For a single environment they are numbers, for a vector of n arrays (n,); so is what it returns."""
+"""A reward as a function of named parts.
+
+They are those of the built-in reward in points (`reward_energy`, ...) and the terms that these are counted
+from in physical units (`chemical_energy_kwh`, `discomfort_k_h`, ...), each of one control interval. For a
+single environment they are numbers, for a vector of n arrays (n,), and so is what it returns.
+"""
 
 
 def one(reward: Reward, parts: Mapping[str, Any]) -> float:

@@ -22,7 +22,8 @@ class SB3VecEnv(VecEnv):
     """An `EVHeatPumpVectorEnv` as stable-baselines3 and sb3-contrib want it.
 
     Trips are reset within the step that ends them; `terminal_observation` and `TimeLimit.truncated` are in
-    the infos, as algorithms need them to bootstrap. `venv.finished` tells of the trips that ended in the last step.
+    the infos, as algorithms need them to bootstrap. `venv.finished` tells of the trips that ended in the
+    last step.
 
     Args:
         num_envs: Number of environments.

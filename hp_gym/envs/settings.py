@@ -15,7 +15,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from hp_gym import _core
-from hp_gym.envs.rewards import Reward
+from hp_gym.envs.rewards import Reward  # noqa: TC001, read by `get_type_hints`
 from hp_gym.overrides import Overrides, Value, assignments
 
 Action: TypeAlias = NDArray[np.int64] | NDArray[np.float32]
@@ -219,13 +219,6 @@ def once(options: Mapping[str, Any] | None, extra: Sequence[str] = ()) -> tuple[
     return options.get("scenario"), options.get("distribution")
 
 
-def to_scalars(info: dict[str, Any]) -> None:
-    """Makes numbers of an info NumPy's: TorchRL's reader of infos asks for their `dtype`."""
-    for name, value in info.items():
-        if type(value) is float:
-            info[name] = np.float64(value)
-
-
 class _Rows(Protocol):
     """An environment of the core, single or vector."""
 
@@ -256,7 +249,8 @@ def tell_of_narrow_rows(core: _Rows) -> None:
         if (vehicle, row) not in _TOLD:
             _TOLD.add((vehicle, row))
             _LOG.warning(
-                "vehicle `%s` can reach %s = %g, but observations end at %g; give observation_bounds={%r: (low, high)}",
+                "vehicle `%s` can reach %s = %g, but observations end at %g: give "
+                "observation_bounds={%r: (low, high)}",
                 vehicle,
                 row,
                 limit,

@@ -49,8 +49,8 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         **chosen: The other settings of `EVHeatPumpEnv`.
 
     Attributes:
-        finished: Trips that ended in the last step, each with its environment's `index`, its `end_reason` (None
-            where it was cut off), `trip`, `kpis` and `summary`.
+        finished: Trips that ended in the last step, each with its environment's `index`, its `end_reason`
+            (None where it was cut off), `trip`, `kpis` and `summary`.
 
     Raises:
         ConfigurationError: A name, key or value is not accepted; the message says what is.
@@ -341,7 +341,7 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         for name in names:
             infos[name], infos[f"_{name}"] = np.zeros(self.num_envs), mask
         if "action_mask" in self._told:
-            masks = self._options(self._core.action_masks().view(np.int8))
+            masks = self._options(self._core.masks().view(np.int8))
             masks[~mask] = 0
             infos["action_mask"], infos["_action_mask"] = masks, mask
         return infos
@@ -364,7 +364,7 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
     def _seeds(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
         if seed is None:
             return [None] * self.num_envs
-        if not isinstance(seed, Sequence | np.ndarray) or isinstance(seed, str):
+        if not isinstance(seed, Sequence | np.ndarray):
             first = settings.whole_seed(seed)
             super().reset(seed=first)
             return [settings.core_seed(first + i) for i in range(self.num_envs)]

@@ -54,8 +54,9 @@ def test_a_distribution_file_of_ones_own_is_read_and_checked(tmp_path: Path) -> 
     text = hp_gym._core.config_text("distribution of episodes", "train-v1")
     path = tmp_path / "mine.toml"
     path.write_text(text.replace("ambient_low_degc = -20.0", "ambient_low_degc = 39.0"))
-    _, info = EVHeatPumpEnv(distribution=path).reset(seed=0)
-    assert info["ambient_temperature_degc"] >= 39.0
+    env = EVHeatPumpEnv(distribution=path)
+    env.reset(seed=0)
+    assert env.trip()["ambient_temperature_degc"] >= 39.0
     path.write_text(text.replace("ambient_low_degc = -20.0", "ambient_low_degc = 45.0"))
     with pytest.raises(
         hp_gym.ConfigurationError, match=r"ambient_low_degc` is 45, but must be between -inf and 40"

@@ -138,11 +138,6 @@ def assemble(name: str, text: str, tensors: Tensors, found: str | None) -> Saved
     except ConfigurationError as error:
         message = f"{name}: does not fit this version of hp_gym: {error}"
         raise PolicyError(message) from error
-    bounds = metadata.environment.observation_bounds
-    if bounds is not None and set(bounds) != set(metadata.environment.observations):
-        apart = sorted(set(bounds) ^ set(metadata.environment.observations))
-        message = f"{name}: metadata: `observation_bounds` and `observations` differ in `{apart[0]}`"
-        raise PolicyError(message)
     if counts != metadata.option_counts:
         message = (
             f"{name}: has {list(metadata.option_counts)} options, but its actions have {list(counts)} in "
@@ -156,6 +151,11 @@ def assemble(name: str, text: str, tensors: Tensors, found: str | None) -> Saved
         message = f"{name}: metadata: `masked`, but continuous actions have no masks"
         raise PolicyError(message)
     _check_tensors(name, metadata, tensors)
+    bounds = metadata.environment.observation_bounds
+    if bounds is not None and set(bounds) != set(metadata.environment.observations):
+        apart = sorted(set(bounds) ^ set(metadata.environment.observations))
+        message = f"{name}: metadata: `observation_bounds` and `observations` differ in `{apart[0]}`"
+        raise PolicyError(message)
     layers = tuple(
         (tensors[f"layers.{i}.weight"], tensors[f"layers.{i}.bias"])
         for i in range(len(metadata.network.hidden_sizes) + 1)

@@ -70,8 +70,8 @@ class PolicyEnvironment(BaseModel):
         """Returns the settings with every set and group spelled out.
 
         Args:
-            **chosen: `vehicle`, `continuous`, `actions`, `action_options`, `observations`, `observation_bounds`
-                and `control_interval_s` of the environment.
+            **chosen: `vehicle`, `continuous`, `actions`, `action_options`, `observations`,
+                `observation_bounds` and `control_interval_s` of the environment.
 
         Raises:
             ConfigurationError: A name or value is not accepted.

@@ -123,7 +123,9 @@ def _drive_group(
             for trip in env.finished:
                 # A stranded trip ends early; its environment drives on from the start, unseen.
                 if not rows[trip.index]:
-                    rows[trip.index] = measure(controller, scenarios[trip.index], trip)
+                    rows[trip.index] = measure(
+                        controller, scenarios[trip.index], trip, env.layout(trip.index)
+                    )
                     left -= 1
                     progress(1)
     finally:

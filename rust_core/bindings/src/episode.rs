@@ -5,6 +5,7 @@ use crate::errors::{ConfigurationError, gymnasium_error, to_python};
 use crate::vehicles::{ActuatorTuple, DEFAULT_ARCHITECTURE, SignalNames, action_tuple, layout_dict};
 use hp_episode::action::{ActionTable, GROUPS};
 use hp_episode::episode::{self, Clock, Facts, Outcome};
+use hp_episode::guard::{Guarded, caught, done};
 use hp_episode::observation::Observed;
 use hp_episode::reward::{PART_NAMES, Parts, RewardParameters, TERM_NAMES, Terms};
 use hp_episode::rows::RowSet;
@@ -25,7 +26,7 @@ pub fn setup(settings: &str, origins: &[Origin]) -> PyResult<(Arc<Setup>, Vec<So
         let key = error.path().to_string();
         ConfigurationError::new_err(format!("setting `{key}`: {}", error.into_inner()))
     })?;
-    Setup::new(&settings, origins).map_err(to_python)
+    caught(|| Setup::new(&settings, origins)).map_err(to_python)
 }
 
 /// Source of trips of one reset; none where it names no scenario and no distribution.
@@ -33,7 +34,7 @@ pub fn once(setup: &Setup, origin: Origin) -> PyResult<Option<Source>> {
     if origin.scenario.is_none() && origin.distribution.is_none() {
         return Ok(None);
     }
-    setup.source(&origin).map(Some).map_err(to_python)
+    caught(|| setup.source(&origin)).map(Some).map_err(to_python)
 }
 
 /// Present values of all signals.
@@ -72,16 +73,14 @@ pub fn step_info<'py>(
     mask: impl FnOnce() -> Vec<bool>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let info = PyDict::new(py);
-    for (name, part) in PART_NAMES.iter().zip(parts) {
-        info.set_item(PyString::intern(py, name), part)?;
-    }
-    if told.contains(&Told::Cost) {
-        info.set_item(intern!(py, "cost"), terms.cost())?;
-    }
-    if told.contains(&Told::Terms) {
-        for (name, value) in TERM_NAMES.iter().zip(terms.values()) {
-            info.set_item(PyString::intern(py, name), value)?;
-        }
+    let cost = told.contains(&Told::Cost).then(|| ("cost", terms.cost()));
+    let counted = if told.contains(&Told::Terms) { TERM_NAMES } else { &[] };
+    let names = PART_NAMES.iter().copied().zip(parts.iter().copied()).chain(cost);
+    let values: Vec<(&str, f64)> = names.chain(counted.iter().copied().zip(terms.values())).collect();
+    // Readers of infos ask for a `dtype`: items of an array are NumPy's own numbers.
+    let array = PyArray1::from_iter(py, values.iter().map(|(_, value)| *value));
+    for (place, (name, _)) in values.iter().enumerate() {
+        info.set_item(PyString::intern(py, name), array.get_item(place)?)?;
     }
     if told.contains(&Told::ActionMask) {
         let mask: Vec<i8> = mask().into_iter().map(i8::from).collect();
@@ -106,19 +105,20 @@ pub fn kpis<'py>(py: Python<'py>, terms: &Terms, weights: &RewardParameters) -> 
     Ok(dict)
 }
 
-/// Numbers by name.
-pub fn by_name<'py>(py: Python<'py>, values: Vec<(String, f64)>) -> PyResult<Bound<'py, PyDict>> {
+/// Numbers by name; NaN where a quantity does not exist.
+pub fn by_name<'py>(py: Python<'py>, values: Vec<(String, Option<f64>)>) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for (name, value) in values {
-        dict.set_item(name, value)?;
+        dict.set_item(name, value.unwrap_or(f64::NAN))?;
     }
     Ok(dict)
 }
 
 /// Share of the observations of the trip in which each row was clipped, by name.
 pub fn clipped_shares<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<Bound<'py, PyDict>> {
-    let names = episode.setup().observations.rows().iter().map(|row| row.name.clone());
-    by_name(py, names.zip(episode.clipped_shares()).collect())
+    let rows = episode.setup().observations.rows().iter();
+    let shares = rows.zip(episode.clipped_shares());
+    by_name(py, shares.map(|(row, share)| (row.name.clone(), Some(share))).collect())
 }
 
 /// What a step gives: observation, reward, terminated, truncated, info.
@@ -147,16 +147,17 @@ pub struct Episode {
     settings: String,
     scenario: Option<String>,
     distribution: Option<String>,
-    inner: episode::Episode,
+    inner: Guarded<episode::Episode>,
     observation: Vec<f32>,
     names: SignalNames,
     closed: bool,
 }
 
 impl Episode {
-    fn observed<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
-        self.inner.observe(&mut self.observation);
-        PyArray1::from_slice(py, &self.observation)
+    fn observed<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let observation = &mut self.observation;
+        self.inner.alter(|episode| episode.observe(observation)).map_err(to_python)?;
+        Ok(PyArray1::from_slice(py, &self.observation))
     }
 
     fn info<'py>(&self, py: Python<'py>, outcome: Option<&Outcome>) -> PyResult<Bound<'py, PyDict>> {
@@ -177,6 +178,7 @@ impl Episode {
 
     fn require_begun(&self, py: Python<'_>) -> PyResult<()> {
         self.require_open(py)?;
+        self.inner.require_sound().map_err(to_python)?;
         if !self.inner.begun() {
             return Err(gymnasium_error(py, "ResetNeeded", "call reset() first"));
         }
@@ -194,7 +196,7 @@ impl Episode {
         let (setup, mut sources) = setup(&settings, &[origin])?;
         let source = sources.remove(0);
         let observation = vec![0.0; setup.observations.rows().len()];
-        let inner = episode::Episode::new(setup, source);
+        let inner = Guarded::new(episode::Episode::new(setup, source));
         Ok(Self {
             settings,
             scenario,
@@ -229,21 +231,18 @@ impl Episode {
         narrow_rows(self.inner.setup())
     }
 
-    fn seed(&mut self, seed: u64) {
-        self.inner.seed(seed);
-    }
-
-    #[pyo3(signature = (scenario=None, distribution=None))]
+    #[pyo3(signature = (scenario=None, distribution=None, seed=None))]
     fn reset<'py>(
         &mut self,
         py: Python<'py>,
         scenario: Option<String>,
         distribution: Option<String>,
+        seed: Option<u64>,
     ) -> PyResult<(Bound<'py, PyArray1<f32>>, Bound<'py, PyDict>)> {
         self.require_open(py)?;
         let once = once(self.inner.setup(), Origin { scenario, distribution, ..Origin::default() })?;
-        self.inner.reset(once.as_ref()).map_err(to_python)?;
-        let observation = self.observed(py);
+        self.inner.begin(|episode| episode.restart(seed, once.as_ref())).map_err(to_python)?;
+        let observation = self.observed(py)?;
         Ok((observation, self.info(py, None)?))
     }
 
@@ -255,24 +254,29 @@ impl Episode {
         }
         let setup = self.inner.setup();
         let outcome = match actions::read(action, setup, None)? {
-            Checked::Values(array) => self.inner.step(array.as_slice()?),
+            Checked::Values(array) => {
+                let values = array.as_slice()?;
+                self.inner.alter(|episode| episode.step(values))
+            }
             Checked::Levels(array) => {
                 let levels = array.as_slice()?.iter().enumerate();
                 let values: Vec<f32> =
                     levels.map(|(column, &level)| setup.actions.value(column, level as usize)).collect();
-                self.inner.step(&values)
+                self.inner.alter(|episode| episode.step(&values))
             }
         };
+        let outcome = outcome.map_err(to_python)?;
         let Some(outcome) = outcome else {
             return Err(gymnasium_error(py, "ResetNeeded", "call reset() first"));
         };
-        let observation = self.observed(py);
+        let observation = self.observed(py)?;
         Ok((observation, outcome.reward, outcome.end.is_some(), false, self.info(py, Some(&outcome))?))
     }
 
     fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
         self.require_begun(py)?;
-        Ok(mask_of(&self.inner).into_pyarray(py))
+        let mask = done(|| mask_of(&self.inner)).map_err(to_python)?;
+        Ok(mask.into_pyarray(py))
     }
 
     fn rule_based_action<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -280,11 +284,11 @@ impl Episode {
         let width = self.inner.setup().actions.rows().len();
         if self.inner.setup().continuous {
             let mut values = vec![0.0; width];
-            self.inner.rule_based_values(&mut values);
+            self.inner.alter(|episode| episode.rule_based_values(&mut values)).map_err(to_python)?;
             Ok(values.into_pyarray(py).into_any())
         } else {
             let mut levels = vec![0; width];
-            self.inner.rule_based_levels(&mut levels);
+            self.inner.alter(|episode| episode.rule_based_levels(&mut levels)).map_err(to_python)?;
             Ok(levels.into_pyarray(py).into_any())
         }
     }
@@ -350,13 +354,13 @@ impl Episode {
     }
 
     fn get_state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        self.inner.require_sound().map_err(to_python)?;
         Ok(PyBytes::new(py, &self.inner.to_bytes(Clock::default()).map_err(to_python)?))
     }
 
     fn set_state(&mut self, py: Python<'_>, state: &[u8]) -> PyResult<()> {
         self.require_open(py)?;
-        self.inner.resume(self.inner.read(state).map_err(to_python)?);
-        Ok(())
+        self.inner.begin(|episode| episode.restore(state)).map_err(to_python)
     }
 
     fn close(&mut self) {
@@ -380,7 +384,7 @@ impl Episode {
     }
 
     fn __setstate__(&mut self, state: (Vec<u8>, bool)) -> PyResult<()> {
-        self.inner.resume(self.inner.read(&state.0).map_err(to_python)?);
+        self.inner.begin(|episode| episode.restore(&state.0)).map_err(to_python)?;
         self.closed = state.1;
         Ok(())
     }

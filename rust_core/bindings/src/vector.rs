@@ -5,11 +5,13 @@ use crate::episode::{
     NarrowRow, ObservedRow, by_name, clipped_shares, facts_dict, kpis, looked, mask_of, narrow_rows,
     observed_row, once, setup, speeds_m_s, step_info,
 };
-use crate::errors::{gymnasium_error, to_python};
+use crate::errors::{ConfigurationError, gymnasium_error, to_python};
 use crate::vehicles::{ActuatorTuple, SignalNames, action_tuple, layout_dict};
 use hp_episode::episode::Episode;
+use hp_episode::guard::{Guarded, done};
 use hp_episode::setup::{Origin, Setup, Source, Told};
 use hp_episode::vector::{self, Actions, ActionsMut, Autoreset, Extras, PARTS, Results, TERMS};
+use hp_plant::error::PlantResult;
 use numpy::ndarray::Dimension;
 use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadwriteArray};
 use pyo3::exceptions::PyValueError;
@@ -61,7 +63,7 @@ pub struct Vector {
     arguments: Arguments,
     setup: Arc<Setup>,
     autoreset: Autoreset,
-    inner: vector::Vector,
+    inner: Guarded<vector::Vector>,
     names: SignalNames,
     closed: bool,
 }
@@ -81,6 +83,24 @@ fn origins(scenarios: &Names, distributions: &Names, vehicles: &Names) -> Vec<Or
     names.map(origin).collect()
 }
 
+/// Checks that there is an entry for each environment, and no thread that would have none to work on.
+fn check_counts(scenarios: &Names, distributions: &Names, vehicles: &Names, threads: usize) -> PyResult<()> {
+    let count = scenarios.len();
+    if count == 0 || distributions.len() != count || vehicles.len() != count {
+        let message = format!(
+            "scenarios, distributions and vehicles are {count}, {} and {}, but must be one each for every environment",
+            distributions.len(),
+            vehicles.len()
+        );
+        return Err(ConfigurationError::new_err(message));
+    }
+    if !(1..=count).contains(&threads) {
+        let message = format!("threads is {threads}, but must be between 1 and the {count} environments");
+        return Err(ConfigurationError::new_err(message));
+    }
+    Ok(())
+}
+
 impl Vector {
     fn require_open(&self, py: Python<'_>) -> PyResult<()> {
         if self.closed {
@@ -95,6 +115,7 @@ impl Vector {
 
     fn require_ready(&self, py: Python<'_>) -> PyResult<()> {
         self.require_open(py)?;
+        self.inner.require_sound().map_err(to_python)?;
         if !self.inner.all_begun() {
             return Err(gymnasium_error(py, "ResetNeeded", "call reset() first"));
         }
@@ -107,6 +128,22 @@ impl Vector {
             return Err(PyValueError::new_err(format!("index is {index}, but must be below {count}")));
         }
         Ok(())
+    }
+
+    /// Begins environments anew; only all of them together are sound after a panic.
+    fn begin(
+        &mut self,
+        indices: &[usize],
+        work: impl FnOnce(&mut vector::Vector) -> PlantResult<()>,
+    ) -> PyResult<()> {
+        let mut named = vec![false; self.inner.episodes().len()];
+        indices.iter().for_each(|&index| named[index] = true);
+        let begun = if named.into_iter().all(|named| named) {
+            self.inner.begin(work)
+        } else {
+            self.inner.change(work)
+        };
+        begun.map_err(to_python)
     }
 
     fn width(&self) -> usize {
@@ -126,6 +163,7 @@ impl Vector {
         step_limit: Option<u64>,
         threads: usize,
     ) -> PyResult<Self> {
+        check_counts(&scenarios, &distributions, &vehicles, threads)?;
         let (setup, sources) = setup(&settings, &origins(&scenarios, &distributions, &vehicles))?;
         let mode = match autoreset.as_str() {
             "NextStep" => Autoreset::NextStep,
@@ -137,8 +175,13 @@ impl Vector {
                 return Err(PyValueError::new_err(message));
             }
         };
-        let episodes = sources.into_iter().map(|source| Episode::new(Arc::clone(&setup), source)).collect();
-        let inner = vector::Vector::new(episodes, mode, step_limit, threads);
+        let mut episodes = Vec::new();
+        if episodes.try_reserve_exact(sources.len()).is_err() {
+            let message = format!("there is no memory for {} environments", sources.len());
+            return Err(ConfigurationError::new_err(message));
+        }
+        episodes.extend(sources.into_iter().map(|source| Episode::new(Arc::clone(&setup), source)));
+        let inner = Guarded::new(vector::Vector::new(episodes, mode, step_limit, threads));
         let arguments = (settings, scenarios, distributions, vehicles, autoreset, step_limit, threads);
         Ok(Self { arguments, setup, autoreset: mode, inner, names: SignalNames::default(), closed: false })
     }
@@ -163,10 +206,11 @@ impl Vector {
             }
             sources.push(loaded[&origin].clone());
         }
-        for ((&index, seed), once) in indices.iter().zip(seeds).zip(&sources) {
-            self.inner.reset(index, seed, once.as_ref()).map_err(to_python)?;
-        }
-        Ok(())
+        let begins = |all: &mut vector::Vector| {
+            let each = indices.iter().zip(seeds).zip(&sources);
+            each.into_iter().try_for_each(|((&index, seed), once)| all.reset(index, seed, once.as_ref()))
+        };
+        self.begin(&indices, begins)
     }
 
     /// Observations of environments, one row each.
@@ -177,7 +221,7 @@ impl Vector {
             let mut values = array.readwrite();
             for (row, &index) in values.as_slice_mut()?.chunks_mut(width).zip(&indices) {
                 self.check_index(index)?;
-                self.inner.episodes_mut()[index].observe(row);
+                self.inner.alter(|all| all.episodes_mut()[index].observe(row)).map_err(to_python)?;
             }
         }
         Ok(array)
@@ -230,7 +274,7 @@ impl Vector {
                 Checked::Values(array) => Actions::Values(array.as_slice()?),
             };
             let inner = &mut self.inner;
-            py.detach(|| inner.step(actions, &mut results)).map_err(to_python)?
+            py.detach(|| inner.change(|all| all.step(actions, &mut results))).map_err(to_python)?
         };
         Ok(Outcomes {
             observations: observations.unbind(),
@@ -248,12 +292,18 @@ impl Vector {
 
     fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
         self.require_ready(py)?;
+        self.masks(py)
+    }
+
+    /// The same, all options where no trip has begun.
+    fn masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
+        self.require_open(py)?;
         let length = self.setup.actions.mask_length();
         let array = PyArray2::zeros(py, [self.inner.episodes().len(), length], false);
         {
             let mut values = array.readwrite();
             for (mask, episode) in values.as_slice_mut()?.chunks_mut(length).zip(self.inner.episodes()) {
-                episode.write_mask(mask);
+                done(|| episode.write_mask(mask)).map_err(to_python)?;
             }
         }
         Ok(array)
@@ -268,13 +318,15 @@ impl Vector {
             let array = PyArray2::zeros(py, shape, false);
             let mut values = array.readwrite();
             let values = values.as_slice_mut()?;
-            py.detach(|| inner.rule_based_actions(ActionsMut::Values(values)));
+            let work = |all: &mut vector::Vector| all.rule_based_actions(ActionsMut::Values(values));
+            py.detach(|| inner.alter(work)).map_err(to_python)?;
             Ok(array.into_any())
         } else {
             let array = PyArray2::zeros(py, shape, false);
             let mut levels = array.readwrite();
             let levels = levels.as_slice_mut()?;
-            py.detach(|| inner.rule_based_actions(ActionsMut::Levels(levels)));
+            let work = |all: &mut vector::Vector| all.rule_based_actions(ActionsMut::Levels(levels));
+            py.detach(|| inner.alter(work)).map_err(to_python)?;
             Ok(array.into_any())
         }
     }
@@ -373,12 +425,12 @@ impl Vector {
         for &index in &indices {
             self.check_index(index)?;
         }
-        self.inner.fork(&indices);
-        Ok(())
+        self.inner.alter(|all| all.fork(&indices)).map_err(to_python)
     }
 
     fn get_state<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyBytes>> {
         self.check_index(index)?;
+        self.inner.require_sound().map_err(to_python)?;
         Ok(PyBytes::new(py, &self.inner.to_bytes(index).map_err(to_python)?))
     }
 
@@ -388,7 +440,7 @@ impl Vector {
         indices.iter().try_for_each(|&index| self.check_index(index))?;
         let states: Vec<(usize, &[u8])> =
             indices.iter().copied().zip(states.iter().map(Vec::as_slice)).collect();
-        self.inner.restore(&states).map_err(to_python)
+        self.begin(&indices, |all| all.restore(&states))
     }
 
     fn close(&mut self) {
@@ -407,7 +459,7 @@ impl Vector {
 
     fn __setstate__(&mut self, state: (Vec<Vec<u8>>, bool)) -> PyResult<()> {
         let states: Vec<(usize, &[u8])> = state.0.iter().map(Vec::as_slice).enumerate().collect();
-        self.inner.restore(&states).map_err(to_python)?;
+        self.inner.begin(|all| all.restore(&states)).map_err(to_python)?;
         self.closed = state.1;
         Ok(())
     }

@@ -193,6 +193,22 @@ impl Episode {
         Ok(())
     }
 
+    /// [`Self::reset`], with the random numbers started anew where there is a seed.
+    ///
+    /// # Errors
+    /// As of [`Self::reset`]; nothing has changed then.
+    pub fn restart(&mut self, seed: Option<u64>, once: Option<&Source>) -> PlantResult<()> {
+        let before = (self.random.clone(), self.noise.clone());
+        if let Some(seed) = seed {
+            self.seed(seed);
+        }
+        let begun = self.reset(once);
+        if begun.is_err() {
+            (self.random, self.noise) = before;
+        }
+        begun
+    }
+
     /// Whether a trip was begun.
     #[must_use]
     pub fn begun(&self) -> bool {
@@ -215,7 +231,7 @@ impl Episode {
         progress.ruled = None;
         for _ in 0..self.setup.control_interval_s {
             let time_s = progress.run.state.time_s;
-            progress.asked = defaults.complete(&car.actions, values, experiment, time_s);
+            defaults.complete_into(&car.actions, values, experiment, time_s, &mut progress.asked);
             let disturbance = experiment.disturbance(progress.run.steps);
             progress.end = experiment.step(&mut progress.run, &progress.asked);
             added += progress.meter.add(
@@ -327,10 +343,10 @@ impl Episode {
     /// Totals of the trip so far by name, as `simulate` gives them, and the share of observations in which a value was
     /// clipped; none before the first reset.
     #[must_use]
-    pub fn totals(&self) -> Vec<(String, f64)> {
+    pub fn totals(&self) -> Vec<(String, Option<f64>)> {
         let Some(Current { experiment, progress, .. }) = &self.current else { return Vec::new() };
         let mut totals = progress.run.summary.values(experiment.plant.layout());
-        totals.push(("clipped_share".to_owned(), self.clipped.share()));
+        totals.push(("clipped_share".to_owned(), Some(self.clipped.share())));
         totals
     }
 
@@ -379,6 +395,8 @@ impl Episode {
         let current = match current {
             None => None,
             Some(Driven { trip, vehicle, fingerprint, progress }) => {
+                let checked = self.setup.garage.check(&trip);
+                checked.map_err(|error| snapshot::refused(format!("of a trip that cannot be ({error})")))?;
                 let begun = Current::of(&self.setup, trip)?;
                 if begun.car.fingerprint != fingerprint {
                     let now = vehicle_label(&begun.experiment);
@@ -393,6 +411,16 @@ impl Episode {
             return Err(snapshot::refused("with counts of observations that cannot be".to_owned()));
         }
         Ok(Restored { clock, random, noise, clipped, current })
+    }
+
+    /// Goes on from what [`Self::to_bytes`] wrote.
+    ///
+    /// # Errors
+    /// See [`Self::read`]; nothing has changed then.
+    pub fn restore(&mut self, bytes: &[u8]) -> PlantResult<()> {
+        let restored = self.read(bytes)?;
+        self.resume(restored);
+        Ok(())
     }
 
     /// Goes on from a state that was read.

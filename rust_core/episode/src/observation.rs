@@ -2,6 +2,7 @@
 
 use crate::action::{ActionTable, FittedActions};
 use crate::rows::{RowSet, branch_name, unknown};
+use hp_plant::architecture::layout::BRANCH_PLACES;
 use hp_plant::command::Command;
 use hp_plant::config::ZERO_CELSIUS_K;
 use hp_plant::error::{PlantError, PlantResult};
@@ -231,11 +232,15 @@ impl ObservationTable {
             count if count <= MANY_ROWS => {
                 self.write_through(fitted, look, blur, &mut [0.0; MANY_ROWS], values, clipped)
             }
-            count => self.write_through(fitted, look, blur, &mut vec![0.0; count], values, clipped),
+            count => {
+                let mut zeros = vec![0.0; count.next_power_of_two()];
+                self.write_through(fitted, look, blur, &mut zeros, values, clipped)
+            }
         }
     }
 
-    #[inline]
+    /// Through numbers in the rows' own units; there is room for a power of two, see [`enter`].
+    #[inline(always)]
     fn write_through(
         &self,
         fitted: &FittedObservations,
@@ -245,8 +250,8 @@ impl ObservationTable {
         values: &mut [f32],
         clipped: &mut Clipped,
     ) {
+        fitted.read(look, zeros);
         let numbers = &mut zeros[..self.rows.len()];
-        fitted.read(look, numbers);
         if let Some(mut blur) = blur {
             // In units of half the range.
             for ((&measured, number), gain) in fitted.measured.iter().zip(numbers.iter_mut()).zip(&self.gains)
@@ -317,6 +322,37 @@ impl Clipped {
     }
 }
 
+/// Where a row stands in an observation, and where its value is read.
+#[derive(Debug, Clone, Copy)]
+struct Entry<F> {
+    row: u16,
+    from: F,
+}
+
+/// An entry of a row and a position.
+fn entry(row: usize, from: usize) -> Entry<u16> {
+    Entry { row: row as u16, from: from as u16 }
+}
+
+/// So many entries are worked on at a time.
+const TOGETHER: usize = 4;
+
+/// Enters the values of some rows. The room is a power of two, so that a row is brought into it by masking: no branch for
+/// each.
+#[inline(always)]
+fn enter<F: Copy>(entries: &[Entry<F>], numbers: &mut [f64], read: impl Fn(F) -> f64) {
+    let last = numbers.len() - 1;
+    let (groups, rest) = entries.as_chunks::<TOGETHER>();
+    for group in groups {
+        for Entry { row, from } in group {
+            numbers[usize::from(*row) & last] = read(*from);
+        }
+    }
+    for Entry { row, from } in rest {
+        numbers[usize::from(*row) & last] = read(*from);
+    }
+}
+
 /// A value of the plant.
 type Read = fn(&View<'_>) -> f64;
 
@@ -325,17 +361,18 @@ type Read = fn(&View<'_>) -> f64;
 /// A row that the vehicle lacks stands in no list: it reads as 0 in its own unit, held within its bounds, and without noise.
 #[derive(Debug, Clone, Default)]
 pub struct FittedObservations {
-    functions: Vec<(usize, Read)>,
-    readers: Vec<(usize, Reader)>,
-    temperatures: Vec<(usize, Node)>,
-    flows: Vec<(usize, Flow)>,
-    branches: Vec<(usize, usize)>,
+    functions: Vec<Entry<Read>>,
+    readers: Vec<Entry<Reader>>,
+    temperatures: Vec<Entry<Node>>,
+    flows: Vec<Entry<Flow>>,
+    branches: Vec<Entry<u16>>,
     /// Rows of the command.
-    asked: Vec<(usize, usize)>,
+    asked: Vec<Entry<u16>>,
     /// Columns of an action whose options are not the vehicle's own.
-    translated: Vec<(usize, usize)>,
+    translated: Vec<Entry<u16>>,
     actions: Option<FittedActions>,
-    speeds_ahead: Vec<(usize, usize)>,
+    /// By seconds.
+    speeds_ahead: Vec<Entry<u16>>,
     solar: Option<usize>,
     occupants: Option<usize>,
     time_left: Option<usize>,
@@ -353,26 +390,27 @@ impl FittedObservations {
         let mut places =
             Self { measured: table.rows.iter().map(Observed::measured).collect(), ..Self::default() };
         for (place, row) in table.rows.iter().enumerate() {
+            let at = place as u16;
             match row.source {
                 Source::Signal => match plant.signals.find(&row.name).map(|signal| signal.reader) {
-                    Some(Reader::Function(read)) => places.functions.push((place, read)),
-                    Some(Reader::Flow(flow)) => places.flows.push((place, flow)),
-                    Some(Reader::Temperature(node)) => places.temperatures.push((place, node)),
-                    Some(reader) => places.readers.push((place, reader)),
+                    Some(Reader::Function(from)) => places.functions.push(Entry { row: at, from }),
+                    Some(Reader::Flow(from)) => places.flows.push(Entry { row: at, from }),
+                    Some(Reader::Temperature(from)) => places.temperatures.push(Entry { row: at, from }),
+                    Some(from) => places.readers.push(Entry { row: at, from }),
                     None => places.measured[place] = false,
                 },
                 Source::Solar => places.solar = Some(place),
                 Source::Occupants => places.occupants = Some(place),
                 Source::Branch => {
                     let branch = branches.iter().position(|name| *name == row.name);
-                    places.branches.extend(branch.map(|branch| (place, branch)));
+                    places.branches.extend(branch.map(|branch| entry(place, branch)));
                 }
                 Source::Asked(column) => match actions.plain_row(column) {
-                    Some(row) => places.asked.push((place, row)),
-                    None if actions.has(column) => places.translated.push((place, column)),
+                    Some(row) => places.asked.push(entry(place, row)),
+                    None if actions.has(column) => places.translated.push(entry(place, column)),
                     None => {}
                 },
-                Source::SpeedAhead(seconds) => places.speeds_ahead.push((place, seconds)),
+                Source::SpeedAhead(seconds) => places.speeds_ahead.push(entry(place, seconds)),
                 Source::TimeLeft => places.time_left = Some(place),
             }
         }
@@ -381,38 +419,27 @@ impl FittedObservations {
     }
 
     /// Writes the values of all rows, which are 0 before.
-    #[inline]
+    #[inline(always)]
     fn read(&self, look: &Look<'_>, values: &mut [f64]) {
-        for &(place, read) in &self.functions {
-            values[place] = read(&look.view);
-        }
-        for &(place, reader) in &self.readers {
-            values[place] = reader.read(&look.view);
-        }
-        for &(place, node) in &self.temperatures {
-            values[place] = look.view.state.temperatures_k[node.index()] - ZERO_CELSIUS_K;
-        }
+        let (state, asked) = (look.view.state, look.asked);
+        enter(&self.functions, values, |read| read(&look.view));
+        enter(&self.readers, values, |reader| reader.read(&look.view));
+        enter(&self.temperatures, values, |node| state.temperatures_k[node.index()] - ZERO_CELSIUS_K);
         if let Some(record) = look.view.record {
-            for &(place, flow) in &self.flows {
-                values[place] = record.flows[flow];
-            }
+            enter(&self.flows, values, |flow| record.flows[flow]);
         }
-        for &(place, branch) in &self.branches {
-            values[place] = f64::from(u8::from(look.view.state.connected[branch]));
-        }
-        for &(place, row) in &self.asked {
-            values[place] = f64::from(look.asked.0[row]);
-        }
+        enter(&self.branches, values, |branch| {
+            f64::from(u8::from(state.connected[usize::from(branch) % BRANCH_PLACES]))
+        });
+        enter(&self.asked, values, |row| f64::from(asked.0[usize::from(row)]));
         if let Some(actions) = &self.actions {
-            for &(place, column) in &self.translated {
-                values[place] = f64::from(actions.value(column, look.asked));
-            }
+            enter(&self.translated, values, |column| f64::from(actions.value(usize::from(column), asked)));
         }
         let cycle = &look.experiment.cycle;
-        for &(place, seconds) in &self.speeds_ahead {
+        enter(&self.speeds_ahead, values, |seconds| {
             let speeds_m_s = cycle.speeds_m_s();
-            values[place] = speeds_m_s[(look.steps + seconds).min(speeds_m_s.len() - 1)];
-        }
+            speeds_m_s[(look.steps + usize::from(seconds)).min(speeds_m_s.len() - 1)]
+        });
         if let Some(place) = self.solar {
             values[place] = look.view.disturbance.solar_gain_w;
         }
@@ -456,7 +483,26 @@ mod tests {
 
     #[test]
     fn rows_show_the_signals_of_their_names_in_any_order() {
-        let (actions, table) = tables(&["jeffs2019"], &[DEFAULT_GROUP]);
+        rows_show_their_signals(&["jeffs2019"], "default", &[DEFAULT_GROUP]);
+    }
+
+    /// More rows than [`USUAL_ROWS`], backwards, with those of cars whose members this one lacks.
+    #[test]
+    fn rows_show_their_signals_however_many_there_are() {
+        let cars = ["three-loops", "cabin-condenser", "direct", "low-temperature-radiator", "jeffs2019"];
+        let set = rows_of(&cars);
+        let actions = ActionTable::new(&["all".to_owned()], &set, &BTreeMap::new()).expect("built in");
+        let names: Vec<String> = all(&set, &actions).into_iter().rev().map(|row| row.name).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        assert!(names.len() > USUAL_ROWS, "{}", names.len());
+        rows_show_their_signals(&cars, "all", &names);
+    }
+
+    fn rows_show_their_signals(architectures: &[&str], group: &str, names: &[&str]) {
+        let set = rows_of(architectures);
+        let actions = ActionTable::new(&[group.to_owned()], &set, &BTreeMap::new()).expect("built in");
+        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+        let table = ObservationTable::new(&names, &set, &actions).expect("built in");
         let experiment = Experiment::load("jeffs2019/case1-4", None, &[]).expect("built in");
         let fitted_actions = FittedActions::of(&actions, experiment.plant.layout());
         let fitted = FittedObservations::of(&table, &experiment.plant, &fitted_actions);

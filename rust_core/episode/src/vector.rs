@@ -87,7 +87,7 @@ pub struct Finished {
     /// Its terms.
     pub terms: Terms,
     /// Its totals by name.
-    pub totals: Vec<(String, f64)>,
+    pub totals: Vec<(String, Option<f64>)>,
     /// Parts of the last reward.
     pub parts: Parts,
     /// Terms of the last step.
@@ -244,7 +244,8 @@ impl Vector {
             over: vec![false; count],
             autoreset,
             step_limit,
-            threads: Threads::new(threads),
+            // More than one an environment would have nothing to do.
+            threads: Threads::new(threads.min(count)),
         }
     }
 
@@ -282,11 +283,7 @@ impl Vector {
     /// # Errors
     /// See [`Episode::reset`].
     pub fn reset(&mut self, index: usize, seed: Option<u64>, once: Option<&Source>) -> PlantResult<()> {
-        let episode = &mut self.episodes[index];
-        if let Some(seed) = seed {
-            episode.seed(seed);
-        }
-        episode.reset(once)?;
+        self.episodes[index].restart(seed, once)?;
         self.elapsed[index] = 0;
         self.over[index] = false;
         self.begun[index] = true;
@@ -458,7 +455,7 @@ impl Job<'_> {
     /// Asks for a share of what will be worked on soon.
     fn fetch_ahead(&self, share: usize) {
         if let Some(episode) = self.ahead {
-            prefetch(episode, share, SHARES);
+            prefetch::<_, SHARES>(episode, share);
         }
     }
 

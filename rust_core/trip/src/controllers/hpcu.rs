@@ -3,7 +3,7 @@
 //! Three purposes: constant coolant flow demands, connections of the components, compressor demand. It reads
 //! the plant's temperatures as a real one does and has no way to the plant but its [`Demand`].
 
-use super::rule_based::{CabinMode, ConstantSettings, Presets, RuleBased};
+use super::rule_based::{CabinMode, ConstantSettings, Presets, RuleBased, constant_settings_of};
 use crate::roles::{Connectable, Roles, Store, Way};
 use crate::strategy::{BatteryTreatment, ClimateControl, Strategy};
 use hp_plant::architecture::layout::Layout;
@@ -135,17 +135,7 @@ struct PowerGains {
     chiller: ResetGains,
 }
 
-/// What parameters ask for whatever happens.
-fn constant_settings(parameters: &HpcuParameters) -> ConstantSettings {
-    ConstantSettings {
-        cabin_set_point_degc: parameters.cabin_set_point_degc,
-        htc_flow_kg_s: parameters.htc_flow_kg_s,
-        chiller_flow_kg_s: parameters.chiller_flow_kg_s,
-        blower_level: parameters.blower_level,
-        heating_recirculation: parameters.heating_recirculation,
-        cooling_recirculation: parameters.cooling_recirculation,
-    }
-}
+constant_settings_of!(HpcuParameters);
 
 impl RuleBased for Hpcu {
     type Parameters = HpcuParameters;
@@ -160,7 +150,7 @@ impl RuleBased for Hpcu {
             chiller: gains(&parameters.chiller_pid),
         };
         let roles = Roles::of(layout, &strategy);
-        let presets = Presets::of(&roles, &constant_settings(&parameters));
+        let presets = Presets::of(&roles, &ConstantSettings::from(&parameters));
         Self { roles, presets, parameters, strategy, gains }
     }
 
@@ -169,7 +159,7 @@ impl RuleBased for Hpcu {
     }
 
     fn constant_settings(&self) -> ConstantSettings {
-        constant_settings(&self.parameters)
+        ConstantSettings::from(&self.parameters)
     }
 
     fn awake(&self, _: &Plant, state: &State) -> HpcuMemory {
@@ -281,12 +271,7 @@ impl Hpcu {
 
     /// Deviation that calls for compressor power [K].
     fn cabin_error_k(&self, state: &State, mode: CabinMode) -> f64 {
-        let below_k =
-            self.parameters.cabin_set_point_degc.kelvin() - temperature_k(state, self.roles.cabin_air);
-        match mode {
-            CabinMode::Heating => below_k,
-            CabinMode::Cooling => -below_k,
-        }
+        mode.lack_k(self.parameters.cabin_set_point_degc.kelvin(), temperature_k(state, self.roles.cabin_air))
     }
 
     /// `min(max(PID battery, PID cabin), PID chiller, PID HTC)`.

@@ -1,6 +1,6 @@
 //! A thermostat: full power on one side of a cabin temperature, none on the other. Untuned, to compare others with.
 
-use super::rule_based::{CabinMode, ConstantSettings, Presets, RuleBased};
+use super::rule_based::{CabinMode, ConstantSettings, Presets, RuleBased, constant_settings_of};
 use crate::roles::Roles;
 use crate::strategy::{ClimateControl, Strategy};
 use hp_plant::architecture::layout::Layout;
@@ -53,12 +53,8 @@ pub struct ThermostatMemory {
 impl Thermostat {
     /// How far the cabin is beyond the target, counted in the direction that a mode works against [K].
     fn lack_k(&self, state: &State, mode: CabinMode) -> f64 {
-        let below_k = self.parameters.cabin_set_point_degc.kelvin()
-            - state.temperatures_k[self.roles.cabin_air.index()];
-        match mode {
-            CabinMode::Heating => below_k,
-            CabinMode::Cooling => -below_k,
-        }
+        let cabin_k = state.temperatures_k[self.roles.cabin_air.index()];
+        mode.lack_k(self.parameters.cabin_set_point_degc.kelvin(), cabin_k)
     }
 
     /// Heating or cooling; in automatic climate control the other one as soon as that would switch on.
@@ -81,17 +77,7 @@ impl Thermostat {
     }
 }
 
-/// What parameters ask for whatever happens.
-fn constant_settings(parameters: &ThermostatParameters) -> ConstantSettings {
-    ConstantSettings {
-        cabin_set_point_degc: parameters.cabin_set_point_degc,
-        htc_flow_kg_s: parameters.htc_flow_kg_s,
-        chiller_flow_kg_s: parameters.chiller_flow_kg_s,
-        blower_level: parameters.blower_level,
-        heating_recirculation: parameters.heating_recirculation,
-        cooling_recirculation: parameters.cooling_recirculation,
-    }
-}
+constant_settings_of!(ThermostatParameters);
 
 impl RuleBased for Thermostat {
     type Parameters = ThermostatParameters;
@@ -99,7 +85,7 @@ impl RuleBased for Thermostat {
 
     fn new(parameters: ThermostatParameters, strategy: Strategy, layout: &Layout) -> Self {
         let roles = Roles::of(layout, &strategy);
-        let presets = Presets::of(&roles, &constant_settings(&parameters));
+        let presets = Presets::of(&roles, &ConstantSettings::from(&parameters));
         Self { roles, presets, parameters, strategy }
     }
 
@@ -108,7 +94,7 @@ impl RuleBased for Thermostat {
     }
 
     fn constant_settings(&self) -> ConstantSettings {
-        constant_settings(&self.parameters)
+        ConstantSettings::from(&self.parameters)
     }
 
     fn awake(&self, _: &Plant, state: &State) -> ThermostatMemory {
