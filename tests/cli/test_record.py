@@ -1,6 +1,7 @@
 """`hp-gym record`: Minari data sets whose trips can be driven again, written whole or not at all."""
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -158,3 +159,21 @@ def test_a_mistake_gets_one_line_and_nothing_is_written(
     assert reason in result.stderr
     assert len(result.stderr.splitlines()) == 1
     assert not (tmp_path / "sets").exists()
+
+
+def test_the_snippet_of_the_page_on_learning_reads_what_its_command_records(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "rl.md").read_text(encoding="utf-8")
+    (command,) = re.findall(r"^uv run --extra data hp-gym (record .*)$", page, flags=re.MULTILINE)
+    (snippet,) = (
+        code for code in re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL) if "minari" in code
+    )
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MINARI_DATASETS_PATH", "")
+    result = CliRunner().invoke(app, command.replace("--episodes 100", "--episodes 2").split())
+    assert result.exit_code == 0, result.output
+    read: dict[str, Any] = {}
+    exec(compile(snippet, "docs/rl.md", "exec"), read)
+    assert read["data"].total_episodes == 2
+    drive_again(read["data"])
