@@ -46,7 +46,7 @@ class Client:
         told: Distributions whose versions are told.
         examples: What runs.
         extras: Extras of ours that are installed too: those whose bounds might not fit the client's.
-        note: What is wrong in the client itself, for the table.
+        note: What is wrong in the client itself, or to know of it, for the table.
     """
 
     name: str
@@ -114,7 +114,7 @@ CLIENTS: Final = (
         ("skrl[torch]",),
         ("skrl",),
         (Example("skrl_ppo.py", "PPO on all kinds of action, native vector and single environment"),),
-        note="with its option `clip_actions`: values beyond a `Box` are an error here",
+        note="with its option `clip_actions`, off by default: a value beyond a `Box` is an error of ours",
     ),
     Client(
         "rllib",
@@ -189,13 +189,18 @@ def outcomes(client: Client, wheel: Path, folder: Path) -> list[tuple[str, bool]
         install = ["uv", "pip", "install", "--quiet", "--python", str(python), "--overrides", overrides]
         run([*install, ours, *client.packages], folder)
     except subprocess.CalledProcessError as error:
-        return [(row(client, "", "installation", f"fails: {last_line(error.stderr)}"), False)]
+        return [(row(client, "", "installation", f"fails: {last_line(error.stderr)}", client.note), False)]
     versions = ", ".join(f"{name} {version(python, name)}" for name in client.told)
-    return [attempt(client, example, python, versions) for example in client.examples]
+    rows = []
+    for number, example in enumerate(client.examples):
+        result = attempt(example, python)
+        note = "" if number else client.note
+        rows.append((row(client, versions, example.what, result, note), result.startswith("ok")))
+    return rows
 
 
-def attempt(client: Client, example: Example, python: Path, versions: str) -> tuple[str, bool]:
-    """Runs one example in a folder of its own, with one thread."""
+def attempt(example: Example, python: Path) -> str:
+    """Runs one example in a folder of its own, with one thread; what came of it."""
     alone = {"OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "PASSIVE", "CUDA_VISIBLE_DEVICES": ""}
     began_s = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
@@ -204,11 +209,10 @@ def attempt(client: Client, example: Example, python: Path, versions: str) -> tu
             run(command, Path(folder), alone)
         except subprocess.CalledProcessError as error:
             print(error.stderr, file=sys.stderr)
-            return row(client, versions, example.what, f"fails: {last_line(error.stderr)}"), False
+            return f"fails: {last_line(error.stderr)}"
         except subprocess.TimeoutExpired:
-            return row(client, versions, example.what, f"fails: not done after {TIMEOUT_S} s"), False
-    took = f"ok, {time.perf_counter() - began_s:.0f} s"
-    return row(client, versions, example.what, took), True
+            return f"fails: not done after {TIMEOUT_S} s"
+    return f"ok, {time.perf_counter() - began_s:.0f} s"
 
 
 def run(command: list[str], folder: Path, environment: dict[str, str] | None = None) -> str:
@@ -237,15 +241,15 @@ def last_line(text: str) -> str:
     return lines[-1].replace("|", "/")[:300] if lines else "without a word"
 
 
-def row(client: Client, versions: str, what: str, result: str) -> str:
+def row(client: Client, versions: str, what: str, result: str, note: str) -> str:
     """Returns a row of the table."""
-    return f"| {client.name} | {versions} | {what} | {result} | {client.note} |"
+    return f"| {client.name} | {versions} | {what} | {result} | {note} |"
 
 
 def write(rows: list[str]) -> None:
     """Puts the table in its place in the page."""
-    head = ["| Client | Versions | Example | Result | The client's own |", "|---|---|---|---|---|"]
-    table = "\n".join(("<!-- table -->", *head, *rows, "<!-- end -->"))
+    head = ["| Client | Versions | Example | Result | Note |", "|---|---|---|---|---|"]
+    table = "\n".join(("<!-- table -->", "", *head, *rows, "", "<!-- end -->"))
     text = PAGE.read_text(encoding="utf-8")
     PAGE.write_text(
         re.sub(r"<!-- table -->.*<!-- end -->", lambda _: table, text, flags=re.DOTALL), encoding="utf-8"

@@ -45,7 +45,8 @@ def benchmark(
     warn_of_code([name for name in controllers or [] if allow_code and name.endswith(".zip")])
     try:
         done = request.carry_out(
-            request.Request(controllers, grid, _seeds(seeds), seed, out, allow_code), console=progress_console
+            request.Request(controllers, grid, training_seeds(seeds), seed, out, allow_code),
+            console=progress_console,
         )
     except (ValueError, OSError) as error:
         fail(error)
@@ -67,15 +68,12 @@ def warn_of_code(files: Collection[str]) -> None:
         return
     from hp_gym.agents.policies.sb3_zip import WARNING
 
-    progress_console.print(
-        f"Warning: {WARNING}. Taken as trained with an id's defaults, a decision a second: "
-        f"{', '.join(files)}.",
-        soft_wrap=True,
-        markup=False,
-    )
+    taken = f"Taken as trained with an id's defaults, a decision a second: {', '.join(files)}."
+    progress_console.print(f"Warning: {WARNING}. {taken}", soft_wrap=True, markup=False)
 
 
-def _seeds(text: str | None) -> list[int] | None:
+def training_seeds(text: str | None) -> list[int] | None:
+    """Reads whole numbers with commas between them."""
     if text is None:
         return None
     try:
