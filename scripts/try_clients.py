@@ -114,7 +114,6 @@ CLIENTS: Final = (
         ("skrl[torch]",),
         ("skrl",),
         (Example("skrl_ppo.py", "PPO on all kinds of action, native vector and single environment"),),
-        note="with its option `clip_actions`, off by default: a value beyond a `Box` is an error of ours",
     ),
     Client(
         "rllib",

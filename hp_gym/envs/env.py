@@ -53,7 +53,7 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     other spaces for the same plant:
 
     - `EVHeatPumpContinuous-v0`: a `Box` in [-1, 1] with the same rows. Options are equal parts of the range,
-      the compressor is off below -0.9.
+      the compressor is off below -0.9; values beyond are held at its ends.
     - `EVHeatPumpFlat-v0`: `Discrete`, one choice among modes (`hp_gym.envs.modes.MODES`, or `modes=`).
     - `EVHeatPumpMO-v0`: as the default, its reward a vector.
     - `EVHeatPump/train-v1`, `EVHeatPump/test-v0`, ...: as the default, on the trips of one distribution.
@@ -208,7 +208,7 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     | `info`               | `[]`         | what infos also hold: `cost`, `action_mask`, `terms`             |
     | `reward`             | `"balanced"` | name or path of a reward, a mapping of weights, or a function    |
     | `control_interval_s` | `1`          | seconds for which an action is held                              |
-    | `sensor_noise`       | `0.0` (none) | standard deviation on measured rows, in units of half the range  |
+    | `sensor_noise`       | `0.0`        | standard deviation on measured rows, in units of half the range  |
     | `overrides`          | `None`       | single values of vehicle, controller and scenario to change      |
 
     `reset(options={"scenario": ...})` and `reset(options={"distribution": ...})` choose another trip once.

@@ -1,7 +1,6 @@
 """skrl: PPO of its runner on the native vector environment, both kinds of action, and DQN on the flat id."""
 
 import tempfile
-from functools import partial
 
 import gymnasium as gym
 import torch
@@ -22,8 +21,7 @@ import hp_gym  # noqa: F401, registers the ids
 NETWORK = [{"name": "net", "input": "OBSERVATIONS", "layers": [64, 64], "activations": "tanh"}]
 POLICIES = {
     "EVHeatPump-v0": multicategorical_model,
-    # A value beyond a Box is an error here; clipping is an option of skrl.
-    "EVHeatPumpContinuous-v0": partial(gaussian_model, clip_actions=True),
+    "EVHeatPumpContinuous-v0": gaussian_model,
     "EVHeatPumpFlat-v0": categorical_model,
 }
 

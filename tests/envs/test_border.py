@@ -348,3 +348,19 @@ def test_an_id_that_is_not_there_is_refused_with_what_is() -> None:
         gym.make("EVHeatPumpDiscrete-v0")
     with pytest.raises(hp_gym.ConfigurationError, match="only one may be given"):
         gym.make("EVHeatPump/test-v0", scenario="jeffs2019/case1-1")
+
+
+def test_continuous_values_beyond_the_range_are_held() -> None:
+    envs: Any = gym.make_vec("EVHeatPumpContinuous-v0", num_envs=2, scenario="jeffs2019/case1-1")
+    one: Any = gym.make("EVHeatPumpContinuous-v0", scenario="jeffs2019/case1-1").unwrapped
+    other: Any = gym.make("EVHeatPumpContinuous-v0", scenario="jeffs2019/case1-1").unwrapped
+    for env in (envs, one, other):
+        env.reset(seed=0)
+    chance = np.random.default_rng(0)
+    for _ in range(20):
+        wild = (3.0 * chance.standard_normal(8)).astype(np.float32)
+        kept = wild.copy()
+        expected = other.step(np.clip(wild, -1.0, 1.0))
+        equal(one.step(wild)[0], expected[0])
+        equal(envs.step(np.stack([wild, wild]))[0][1], expected[0])
+        np.testing.assert_array_equal(wild, kept)

@@ -85,12 +85,12 @@ VALUES = [
     (
         np.full(8, np.nan, dtype=np.float32),
         ValueError,
-        r"action\[0\] \(battery\) is NaN, but must be between -1 and 1",
+        r"action\[0\] \(battery\) is NaN, but must be a finite number",
     ),
     (
-        np.array([0, 0, 0, 0, 0, 0, 0, 1.01], dtype=np.float32),
+        np.array([0, 0, 0, 0, 0, 0, 0, np.inf], dtype=np.float32),
         ValueError,
-        r"action\[7\] \(compressor_power\) is 1.0",
+        r"action\[7\] \(compressor_power\) is inf",
     ),
 ]
 

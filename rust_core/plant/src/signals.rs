@@ -158,6 +158,7 @@ impl SignalTable {
         table.add_loops(layout);
         if layout.refrigerates() {
             table.add_refrigeration();
+            table.add_refrigerant_solve();
         }
         table.add_checks();
         table.add_connections(layout);
@@ -317,6 +318,12 @@ impl SignalTable {
                 v.recorded(|r| r.refrigeration.mass_flow_kg_s)
             })
             .within(0.0, 0.1),
+        ]);
+    }
+
+    /// How the refrigerant solve went, and what came of it.
+    fn add_refrigerant_solve(&mut self) {
+        self.rows.extend([
             function(
                 "refrigeration_status",
                 "-",
