@@ -261,6 +261,8 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
         self._episode = _core.Episode(settings.to_json(**chosen), *trips)
         reward = chosen.get("reward")
         self._reward: Reward | None = reward if callable(reward) else None
+        # Nothing to do after a step, which is as quick as a call.
+        self._plain = self._reward is None and render_mode != "human"
         self._told = settings.told(chosen)
         settings.tell_of_narrow_rows(self._episode)
         self.option_names = settings.option_names(self._episode)
@@ -310,6 +312,8 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
             ResetNeeded: No trip has begun, or it has ended.
         """
         result = self._episode.step(action)
+        if self._plain:
+            return result
         if self._reward is not None:
             observation, _, terminated, truncated, info = result
             result = observation, rewards.one(self._reward, info), terminated, truncated, info

@@ -2,6 +2,7 @@
 
 use crate::actions::{self, Checked};
 use crate::errors::{ConfigurationError, gymnasium_error, to_python};
+use crate::scalars::float64;
 use crate::vehicles::{ActuatorTuple, DEFAULT_ARCHITECTURE, SignalNames, action_tuple, layout_dict};
 use hp_episode::action::{ActionTable, GROUPS};
 use hp_episode::episode::{self, Clock, Facts, Outcome};
@@ -10,11 +11,13 @@ use hp_episode::observation::Observed;
 use hp_episode::reward::{PART_NAMES, Parts, RewardParameters, TERM_NAMES, Terms};
 use hp_episode::rows::RowSet;
 use hp_episode::setup::{Origin, Settings, Setup, Source, Told};
+use hp_plant::command::ACTUATOR_PLACES;
 use hp_plant::config::vehicle::architecture;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBytes, PyDict, PyString, PyTuple};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -65,6 +68,12 @@ pub fn facts_dict<'py>(py: Python<'py>, facts: Option<&Facts>) -> PyResult<Bound
     Ok(dict)
 }
 
+/// Names of the parts of a reward, made once: strings that nobody keeps would be interned and forgotten at each step.
+fn part_names(py: Python<'_>) -> &'static [Py<PyString>] {
+    static NAMES: PyOnceLock<Vec<Py<PyString>>> = PyOnceLock::new();
+    NAMES.get_or_init(py, || PART_NAMES.iter().map(|name| PyString::intern(py, name).unbind()).collect())
+}
+
 /// What is told of a step: the parts of its reward, and what else is wanted. Nothing was paid where a trip has just begun.
 pub fn step_info<'py>(
     py: Python<'py>,
@@ -73,14 +82,19 @@ pub fn step_info<'py>(
     mask: impl FnOnce() -> Vec<bool>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let info = PyDict::new(py);
-    let cost = told.contains(&Told::Cost).then(|| ("cost", terms.cost()));
-    let counted = if told.contains(&Told::Terms) { TERM_NAMES } else { &[] };
-    let names = PART_NAMES.iter().copied().zip(parts.iter().copied()).chain(cost);
-    let values: Vec<(&str, f64)> = names.chain(counted.iter().copied().zip(terms.values())).collect();
-    // Readers of infos ask for a `dtype`: items of an array are NumPy's own numbers.
-    let array = PyArray1::from_iter(py, values.iter().map(|(_, value)| *value));
-    for (place, (name, _)) in values.iter().enumerate() {
-        info.set_item(PyString::intern(py, name), array.get_item(place)?)?;
+    for (name, &part) in part_names(py).iter().zip(parts) {
+        info.set_item(name, float64(py, part)?)?;
+    }
+    if told.is_empty() {
+        return Ok(info);
+    }
+    if told.contains(&Told::Cost) {
+        info.set_item(intern!(py, "cost"), float64(py, terms.cost())?)?;
+    }
+    if told.contains(&Told::Terms) {
+        for (name, value) in TERM_NAMES.iter().zip(terms.values()) {
+            info.set_item(PyString::intern(py, name), float64(py, value)?)?;
+        }
     }
     if told.contains(&Told::ActionMask) {
         let mask: Vec<i8> = mask().into_iter().map(i8::from).collect();
@@ -259,10 +273,17 @@ impl Episode {
                 self.inner.alter(|episode| episode.step(values))
             }
             Checked::Levels(array) => {
-                let levels = array.as_slice()?.iter().enumerate();
-                let values: Vec<f32> =
-                    levels.map(|(column, &level)| setup.actions.value(column, level as usize)).collect();
-                self.inner.alter(|episode| episode.step(&values))
+                let levels = array.as_slice()?;
+                let (mut few, mut many) = ([0.0; ACTUATOR_PLACES], Vec::new());
+                // Cars that share an environment can have more rows together than one has.
+                let values = few.get_mut(..levels.len()).unwrap_or_else(|| {
+                    many.resize(levels.len(), 0.0);
+                    &mut many
+                });
+                for (column, (value, &level)) in values.iter_mut().zip(levels).enumerate() {
+                    *value = setup.actions.value(column, level as usize);
+                }
+                self.inner.alter(|episode| episode.step(values))
             }
         };
         let outcome = outcome.map_err(to_python)?;

@@ -6,6 +6,7 @@ mod episode;
 mod errors;
 mod experiment;
 mod kinds;
+mod scalars;
 mod vector;
 mod vehicles;
 
