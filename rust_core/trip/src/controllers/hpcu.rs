@@ -3,6 +3,7 @@
 //! Three purposes: constant coolant flow demands, connections of the components, compressor demand. It reads
 //! the plant's temperatures as a real one does and has no way to the plant but its [`Demand`].
 
+use super::options::Options;
 use super::rule_based::{CabinMode, ConstantSettings, Presets, RuleBased, constant_settings_of};
 use crate::roles::{Connectable, Roles, Store, Way};
 use crate::strategy::{BatteryTreatment, ClimateControl, Strategy};
@@ -54,6 +55,9 @@ parameters! {
         htc_pid: PidParameters,
         /// Compressor power against chiller supply, W per K.
         chiller_pid: PidParameters,
+        /// What today's cars have beyond the paper's rules (ours); nothing where the file has no such table.
+        #[serde(default)]
+        options: Options,
     }
 }
 
@@ -150,7 +154,10 @@ impl RuleBased for Hpcu {
             chiller: gains(&parameters.chiller_pid),
         };
         let roles = Roles::of(layout, &strategy);
-        let presets = Presets::of(&roles, &ConstantSettings::from(&parameters));
+        let has_heat_pump = strategy.heat_pump && roles.compressor_row.is_some();
+        let mut settings = ConstantSettings::from(&parameters);
+        settings.cabin_set_point_degc.0 -= parameters.options.heater_offset_k(has_heat_pump);
+        let presets = Presets::of(&roles, &settings);
         Self { roles, presets, parameters, strategy, gains }
     }
 
@@ -186,6 +193,7 @@ impl RuleBased for Hpcu {
             && self.cabin_error_k(state, mode) >= self.parameters.ptc_from_deviation_k;
         self.roles.allow_heaters(heats, demand);
         self.trim_requests(state, memory, mode, demand);
+        self.blow(state, mode, demand);
         if let Some(row) = self.roles.compressor_row {
             demand[row] = self.compressor_power_w(plant, state, memory, mode);
         }
@@ -240,7 +248,7 @@ impl Hpcu {
                     heat_up_to_k - if memory.heats_battery { 0.0 } else { limits.heating_hysteresis_k };
                 let release_k =
                     cool_above_k - if memory.cools_battery { limits.cooling_hysteresis_k } else { 0.0 };
-                (battery_k < resume_k, battery_k > release_k)
+                (battery_k < resume_k && self.battery_share(state) > 0.0, battery_k > release_k)
             }
         };
         match (memory.heats_battery, memory.cools_battery) {
@@ -264,8 +272,29 @@ impl Hpcu {
             let above_k = temperature_k(state, self.roles.battery_node) - limits.source_down_to_degc.kelvin();
             demand[battery.request_row] *= (above_k / limits.source_request_band_k).clamp(0.0, 1.0);
         }
+        if let Some(battery) = self.roles.battery
+            && memory.heats_battery
+        {
+            demand[battery.request_row] *= self.battery_share(state);
+        }
         if mode == CabinMode::Cooling {
             self.roles.unlimit_rejection(demand);
+        }
+    }
+
+    /// Share of its heat request that the battery gets while the cabin comes first.
+    fn battery_share(&self, state: &State) -> f64 {
+        let supplies_k = self.roles.hot_supplies.iter().map(|&node| temperature_k(state, node));
+        let lack_k = self.cabin_error_k(state, CabinMode::Heating);
+        self.parameters.options.battery_share(lack_k, supplies_k.reduce(f64::max))
+    }
+
+    /// Blowers as the cabin that counts for comfort needs them.
+    fn blow(&self, state: &State, mode: CabinMode, demand: &mut Demand) {
+        let deviation_k = self.cabin_error_k(state, mode);
+        let level = self.parameters.options.blower_level(self.parameters.blower_level, deviation_k);
+        for &row in &self.roles.blower_rows {
+            demand[row] = level;
         }
     }
 
