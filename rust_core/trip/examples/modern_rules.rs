@@ -2,7 +2,8 @@
 //!
 //! `cargo run --release -p hp_trip --example modern_rules -- steady hpcu hpcu-modern`: electrical power at a constant 60 km/h
 //! after two hours, for cabins that began warm or cold. `cold-start`: the first 18 minutes at -15 degC with a PTC of 7 kW, the
-//! battery heated. `ptc-alone`: energy of each with the heat pump and with the PTC alone at equal comfort. Rules by name or path.
+//! battery heated. `ptc-alone`: energy of each with the heat pump and with the PTC alone at equal comfort. `climates`: energy and
+//! discomfort of each over three trips at 13 ambient temperatures. Rules by name or path.
 
 use hp_plant::config::library::Override;
 use hp_plant::flows::Flow;
@@ -26,7 +27,8 @@ fn main() {
             "steady" => steady(rules),
             "cold-start" => cold_start(rules),
             "ptc-alone" => ptc_alone(rules),
-            other => panic!("`{other}` is no table; there are steady, cold-start and ptc-alone"),
+            "climates" => climates(rules),
+            other => panic!("`{other}` is no table; there are steady, cold-start, ptc-alone and climates"),
         }
     }
 }
@@ -169,36 +171,48 @@ fn trips(rules: &str, ambient_degc: f64, changes: &[String]) -> (f64, f64) {
     (100.0 * energy_kwh / distance_km, discomfort_k_s / duration_s)
 }
 
-/// With the heat pump, and with the PTC alone at the cabin set point that gives the same discomfort.
+/// With the heat pump at the discomfort of the PTC alone: at lower cabin set points or, where the cabin does not get there in
+/// time, with a smaller PTC. Battery isolated, and heated.
 fn ptc_alone(rules: &str) {
     println!(
-        "| ambient, degC | kWh/100 km | discomfort, K | PTC alone, as it is | | at equal comfort | heat pump's excess |"
+        "| battery | ambient, degC | PTC alone, kWh/100 km | K | with heat pump | K | at equal comfort | excess |"
     );
-    println!("|---|---|---|---|---|---|---|");
-    for ambient_degc in [-20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0, 15.0, 20.0] {
+    println!("|---|---|---|---|---|---|---|---|");
+    let set_points = [22.0, 21.0, 20.0, 19.0, 18.0, 16.0, 14.0, 12.0, 10.0]
+        .map(|degc| format!("controller.cabin_set_point_degc={degc}"));
+    let heaters = [5377.0, 5000.0, 4500.0, 4000.0, 3500.0, 3000.0]
+        .map(|power_w| format!("vehicle.ptc.maximum_power_w={power_w}"));
+    for battery in ["isolate", "heat"] {
+        for ambient_degc in [-20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0, 15.0, 20.0] {
+            let with = |change: &str| {
+                let treated = format!("scenario.strategy.battery=\"{battery}\"");
+                trips(rules, ambient_degc, &[treated, change.to_owned()])
+            };
+            let alone = with("scenario.strategy.heat_pump=false");
+            let equal = [&set_points[..], &heaters[..]].into_iter().find_map(|changes| {
+                let swept: Vec<_> = changes.iter().map(|change| with(change)).collect();
+                let pair = swept.windows(2).find(|pair| pair[0].1 <= alone.1 && alone.1 <= pair[1].1)?;
+                let share = (alone.1 - pair[0].1) / (pair[1].1 - pair[0].1).max(1e-9);
+                Some(pair[0].0 + share * (pair[1].0 - pair[0].0))
+            });
+            let (equal, excess) = equal.map_or(("none".to_owned(), "none".to_owned()), |equal| {
+                (format!("{equal:.2}"), format!("{:+.1} %", 100.0 * (equal / alone.0 - 1.0)))
+            });
+            let (energy, discomfort) = with(&set_points[0]);
+            println!(
+                "| {battery} | {ambient_degc} | {:.2} | {:.2} | {energy:.2} | {discomfort:.2} | {equal} | {excess} |",
+                alone.0, alone.1
+            );
+        }
+    }
+}
+
+/// Energy and discomfort from -20 to 40 degC.
+fn climates(rules: &str) {
+    println!("| ambient, degC | kWh/100 km | discomfort, K |\n|---|---|---|");
+    for step in -4..=8 {
+        let ambient_degc = 5.0 * f64::from(step);
         let (energy, discomfort) = trips(rules, ambient_degc, &[]);
-        let alone: Vec<(f64, f64)> = [30.0, 27.0, 25.0, 23.0, 22.0, 21.0, 20.0, 18.0, 15.0, 10.0]
-            .iter()
-            .map(|degc| {
-                let changes = [
-                    "scenario.strategy.heat_pump=false".to_owned(),
-                    format!("controller.cabin_set_point_degc={degc}"),
-                ];
-                trips(rules, ambient_degc, &changes)
-            })
-            .collect();
-        let (as_it_is, its_discomfort) = alone[4];
-        // Set points fall along the list; comfort does where heating is all that is asked for.
-        let pair = alone.windows(2).find(|pair| pair[0].1 <= discomfort && discomfort <= pair[1].1);
-        let equal = pair.map(|pair| {
-            let share = (discomfort - pair[0].1) / (pair[1].1 - pair[0].1).max(1e-9);
-            pair[0].0 + share * (pair[1].0 - pair[0].0)
-        });
-        let (equal_text, excess) = equal.map_or(("none".to_owned(), "".to_owned()), |equal| {
-            (format!("{equal:.2}"), format!("{:+.1} %", 100.0 * (energy / equal - 1.0)))
-        });
-        println!(
-            "| {ambient_degc} | {energy:.2} | {discomfort:.2} | {as_it_is:.2} | {its_discomfort:.2} | {equal_text} | {excess} |"
-        );
+        println!("| {ambient_degc} | {energy:.2} | {discomfort:.2} |");
     }
 }

@@ -154,9 +154,8 @@ impl RuleBased for Hpcu {
             chiller: gains(&parameters.chiller_pid),
         };
         let roles = Roles::of(layout, &strategy);
-        let has_heat_pump = strategy.heat_pump && roles.compressor_row.is_some();
         let mut settings = ConstantSettings::from(&parameters);
-        settings.cabin_set_point_degc.0 -= parameters.options.heater_offset_k(has_heat_pump);
+        settings.cabin_set_point_degc.0 -= parameters.options.heater_offset_k(roles.heat_pump(&strategy));
         let presets = Presets::of(&roles, &settings);
         Self { roles, presets, parameters, strategy, gains }
     }
@@ -193,7 +192,8 @@ impl RuleBased for Hpcu {
             && self.cabin_error_k(state, mode) >= self.parameters.ptc_from_deviation_k;
         self.roles.allow_heaters(heats, demand);
         self.trim_requests(state, memory, mode, demand);
-        self.blow(state, mode, demand);
+        let (parameters, lack_k) = (&self.parameters, self.cabin_error_k(state, mode));
+        self.roles.blow(parameters.options.blower_level(mode, parameters.blower_level, lack_k), demand);
         if let Some(row) = self.roles.compressor_row {
             demand[row] = self.compressor_power_w(plant, state, memory, mode);
         }
@@ -287,15 +287,6 @@ impl Hpcu {
         let supplies_k = self.roles.hot_supplies.iter().map(|&node| temperature_k(state, node));
         let lack_k = self.cabin_error_k(state, CabinMode::Heating);
         self.parameters.options.battery_share(lack_k, supplies_k.reduce(f64::max))
-    }
-
-    /// Blowers as the cabin that counts for comfort needs them.
-    fn blow(&self, state: &State, mode: CabinMode, demand: &mut Demand) {
-        let deviation_k = self.cabin_error_k(state, mode);
-        let level = self.parameters.options.blower_level(self.parameters.blower_level, deviation_k);
-        for &row in &self.roles.blower_rows {
-            demand[row] = level;
-        }
     }
 
     /// Deviation that calls for compressor power [K].

@@ -1,6 +1,7 @@
 //! Options that cars of today have and the paper's rules have not, for any rule set: heat pump before PTC, cabin before
 //! battery, blower by need. All of them pure functions of what is measured; zeros switch them off.
 
+use super::rule_based::CabinMode;
 use hp_plant::config::Celsius;
 use hp_plant::parameters;
 
@@ -16,8 +17,10 @@ parameters! {
         battery_from_supply_degc: Celsius = -40.0 .. 95.0,
         /// How far above that the battery gets its whole request [K].
         battery_supply_band_k: f64 = 0.0 .. 50.0,
-        /// Blower by need: deviation from the cabin target that calls for the whole air flow; 0: constant air flow [K].
-        blower_band_k: f64 = 0.0 .. 20.0,
+        /// Blower by need: lack of the cabin that calls for the whole air flow while heating; 0: constant air flow [K].
+        heating_blower_band_k: f64 = 0.0 .. 30.0,
+        /// The same while cooling [K].
+        cooling_blower_band_k: f64 = 0.0 .. 30.0,
         /// Blower level at the cabin target, which brings the fresh air that occupants need [-].
         least_blower_level: f64 = 0.0 .. 1.0,
     }
@@ -50,14 +53,18 @@ impl Options {
         satisfied.max(surplus).clamp(0.0, 1.0)
     }
 
-    /// Blower level for a cabin that is this far from its target on either side [K]; `highest` is the level of full need.
+    /// Blower level for a cabin that lacks this much in the direction of a mode [K]; `highest` is the level of full need.
     #[must_use]
-    pub fn blower_level(&self, highest: f64, deviation_k: f64) -> f64 {
-        if self.blower_band_k == 0.0 {
+    pub fn blower_level(&self, mode: CabinMode, highest: f64, lack_k: f64) -> f64 {
+        let band_k = match mode {
+            CabinMode::Heating => self.heating_blower_band_k,
+            CabinMode::Cooling => self.cooling_blower_band_k,
+        };
+        if band_k == 0.0 {
             return highest;
         }
         let least = self.least_blower_level.min(highest);
-        least + (highest - least) * (deviation_k.abs() / self.blower_band_k).min(1.0)
+        least + (highest - least) * (lack_k / band_k).clamp(0.0, 1.0)
     }
 }
 
@@ -71,7 +78,8 @@ mod tests {
             battery_after_cabin_band_k: 1.0,
             battery_from_supply_degc: Celsius(70.0),
             battery_supply_band_k: 10.0,
-            blower_band_k: 4.0,
+            heating_blower_band_k: 4.0,
+            cooling_blower_band_k: 2.0,
             least_blower_level: 0.3,
         }
     }
@@ -82,7 +90,8 @@ mod tests {
         assert_eq!(none.heater_offset_k(true), 0.0);
         for lack_k in [-5.0, 0.0, 40.0] {
             assert_eq!(none.battery_share(lack_k, Some(250.0)), 1.0);
-            assert_eq!(none.blower_level(0.7, lack_k), 0.7);
+            assert_eq!(none.blower_level(CabinMode::Heating, 0.7, lack_k), 0.7);
+            assert_eq!(none.blower_level(CabinMode::Cooling, 0.7, lack_k), 0.7);
         }
     }
 
@@ -104,13 +113,15 @@ mod tests {
     }
 
     #[test]
-    fn blower_follows_the_deviation_on_both_sides_between_its_levels() {
-        let options = modern();
-        assert_eq!(options.blower_level(1.0, 0.0), 0.3);
-        assert!((options.blower_level(1.0, -2.0) - 0.65).abs() < 1e-12);
-        assert_eq!(options.blower_level(1.0, 2.0), options.blower_level(1.0, -2.0));
-        assert_eq!(options.blower_level(1.0, 15.0), 1.0);
+    fn blower_follows_the_lack_between_its_levels() {
+        let level = |mode, highest, lack_k| modern().blower_level(mode, highest, lack_k);
+        assert_eq!(level(CabinMode::Heating, 1.0, 0.0), 0.3);
+        assert!((level(CabinMode::Heating, 1.0, 2.0) - 0.65).abs() < 1e-12);
+        assert_eq!(level(CabinMode::Cooling, 1.0, 2.0), 1.0);
+        assert_eq!(level(CabinMode::Heating, 1.0, 15.0), 1.0);
+        // Fresh air is left where the cabin is too warm, too.
+        assert_eq!(level(CabinMode::Heating, 1.0, -5.0), 0.3);
         // A driver who wants less air than the least gets it.
-        assert_eq!(options.blower_level(0.2, 1.0), 0.2);
+        assert_eq!(level(CabinMode::Heating, 0.2, 1.0), 0.2);
     }
 }
