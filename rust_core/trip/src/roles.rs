@@ -207,6 +207,20 @@ impl Roles {
         }
     }
 
+    /// Whether there is a heat pump that a strategy allows.
+    #[must_use]
+    pub fn heat_pump(&self, strategy: &Strategy) -> bool {
+        strategy.heat_pump && self.compressor_row.is_some()
+    }
+
+    /// Sets all blowers to a level.
+    #[inline]
+    pub fn blow(&self, level: f64, demand: &mut Demand) {
+        for &row in &self.blower_rows {
+            demand[row] = level;
+        }
+    }
+
     /// Allows heaters to heat, or does not.
     #[inline]
     pub fn allow_heaters(&self, allowed: bool, demand: &mut Demand) {

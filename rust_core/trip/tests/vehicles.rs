@@ -92,7 +92,7 @@ fn physics_holds_in_every_vehicle_under_the_rules_from_minus_20_to_40_degc() {
     let mut cases = Vec::new();
     let cars = every_car();
     for vehicle in &cars {
-        for controller in ["hpcu", "thermostat"] {
+        for controller in ["hpcu", "hpcu-modern", "thermostat"] {
             cases.extend(AMBIENTS_DEGC.map(|ambient_degc| (vehicle, controller, ambient_degc)));
         }
     }
@@ -109,7 +109,7 @@ fn physics_holds_in_every_vehicle_under_the_rules_from_minus_20_to_40_degc() {
         // A second cabin gets its heat and cold from machines that were made for one.
         let layout = experiment.plant.layout();
         let (least_rise_k, highest_degc) = if layout.cabins.len() == 1 { (15.0, 28.0) } else { (10.0, 32.0) };
-        if controller == "hpcu" && (0.0..=8.0).contains(&ambient_degc) {
+        if controller.starts_with("hpcu") && (0.0..=8.0).contains(&ambient_degc) {
             assert!((20.0..24.0).contains(&cabin_degc), "{vehicle}, {ambient_degc}: {cabin_degc} degC");
         }
         if ambient_degc <= -7.0 {
