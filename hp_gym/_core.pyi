@@ -289,8 +289,8 @@ class Vector:
         distributions: Sequence[str | None],
     ) -> None:
         """Resets environments, each with its seed and, just this once, its scenario or distribution."""
-    def observe(self, indices: Sequence[int]) -> _Floats:
-        """Observations of environments, one row each."""
+    def observe(self, indices: Sequence[int], again: bool = False) -> _Floats:
+        """Observations of environments, one row each; those seen before are not counted again."""
     def step(self, action: NDArray[Any]) -> Outcomes:
         """Drives all environments on for one control interval."""
     def action_masks(self) -> _Bools:

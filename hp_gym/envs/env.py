@@ -128,8 +128,8 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     | 54  | previous_ptc                    | -    | -1      | 1      |
     | 55  | previous_compressor_power       | -    | -1      | 1      |
 
-    Bounds hold for every built-in car. `decode(observation)` gives plain units, `clipped_shares()` says how
-    often a value was beyond its bounds.
+    Bounds hold for every built-in car with the default actions. `decode(observation)` gives plain units,
+    `clipped_shares()` says how often a value was beyond its bounds.
 
     This is what a car without navigation can know. Further rows by name: `preview` (the speed 2 to 80 s
     ahead), `time_left_s`, and every other signal of the plant (`hp_gym._core.observation_table()`).
@@ -316,7 +316,8 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
             return result
         if self._reward is not None:
             observation, _, terminated, truncated, info = result
-            result = observation, rewards.one(self._reward, info), terminated, truncated, info
+            parts = {name: info[name] for name in (*settings.PARTS, *settings.TERMS)}
+            result = observation, rewards.one(self._reward, parts), terminated, truncated, info
             self._hide_terms(info)
         if self.render_mode == "human":
             self.render()

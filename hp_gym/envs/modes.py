@@ -72,7 +72,7 @@ class Modes:
         if len(modes) < 2:
             message = f"modes is {modes!r}, but must be a list of at least two modes"
             raise _core.ConfigurationError(message)
-        self.modes = tuple(modes)
+        self.modes = tuple(dict(mode) for mode in modes)
         self._counts = np.asarray(counts)
         self._actions = np.array([_action(mode, options, self._counts) for mode in self.modes])
         self._starts = np.concatenate([[0], np.cumsum(self._counts)[:-1]])

@@ -126,7 +126,12 @@ def _action_options(options: Mapping[str, Sequence[str]] | None) -> dict[str, An
 
 def _observation_bounds(bounds: Mapping[str, tuple[float, float]] | None) -> dict[str, Any]:
     pairs: dict[str, tuple[float, float]] = {}
-    for name, pair in (bounds or {}).items():
+    try:
+        rows = dict(bounds or {})
+    except (TypeError, ValueError):
+        message = f"observation_bounds is {bounds!r}, but must be a mapping of rows to (low, high)"
+        raise _core.ConfigurationError(message) from None
+    for name, pair in rows.items():
         try:
             low, high = (float(end) for end in pair)
         except (TypeError, ValueError):
@@ -299,6 +304,7 @@ def decode(core: _Rows, observations: NDArray[np.float32]) -> dict[str, NDArray[
         ValueError: They have the wrong shape.
     """
     rows = core.observation_rows()
+    observations = np.asarray(observations)
     if observations.shape[-1:] != (len(rows),):
         message = f"observations have the shape {observations.shape}, but must end with {len(rows)} rows"
         raise ValueError(message)

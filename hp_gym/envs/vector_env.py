@@ -50,7 +50,7 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
 
     Attributes:
         finished: Trips that ended in the last step, each with its environment's `index`, its `end_reason`
-            (None where it was cut off), `trip`, `kpis` and `summary`.
+            (None where it was cut off), `trip`, `kpis` and `summary`; none after a reset or a restored state.
 
     Raises:
         ConfigurationError: A name, key or value is not accepted; the message says what is.
@@ -104,7 +104,7 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         self._reward: Reward | None = reward if callable(reward) else None
         self._told = settings.told(chosen)
         self.finished: list[_core.FinishedTrip] = []
-        self._seeded = False
+        self._seeded = np.zeros(self.num_envs, dtype=np.bool_)
         self._last: NDArray[np.float32] | None = None
         self._render_size = render_size
         self._renderers: list[Renderer] = []
@@ -136,10 +136,10 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         mask = self._mask(options)
         trips = self._trips(*settings.once(options, ["reset_mask"]), None)
         seeds = self._seeds(seed)
-        if not self._seeded:
+        new = mask & ~self._seeded
+        if new.any():
             fresh = self.np_random.integers(2**63, size=self.num_envs)
-            seeds = [int(fresh[i]) if given is None else given for i, given in enumerate(seeds)]
-        self._seeded = True
+            seeds = [int(fresh[i]) if new[i] and seed is None else seed for i, seed in enumerate(seeds)]
         indices = np.flatnonzero(mask).tolist()
         self._core.reset(
             indices,
@@ -147,7 +147,8 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             [trips[0][i] for i in indices],
             [trips[1][i] for i in indices],
         )
-        observations = self._observations(indices)
+        self._seeded |= mask
+        observations = self._observations(mask)
         self._keep(observations)
         self.finished = []
         return observations, self._infos_of_reset(mask)
@@ -166,18 +167,18 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             ResetNeeded: A trip has not begun, or has ended and there is no automatic reset.
         """
         outcomes = self._core.step(actions)
-        everywhere = np.ones(self.num_envs, dtype=np.bool_)
         infos: dict[str, Any] = {}
-        for name, values in zip(settings.PARTS, outcomes.parts, strict=True):
-            infos[name], infos[f"_{name}"] = values, everywhere
+        marks = np.ones((len(settings.PARTS), self.num_envs), dtype=np.bool_)
+        for name, values, mark in zip(settings.PARTS, outcomes.parts, marks, strict=True):
+            infos[name], infos[f"_{name}"] = values, mark
         if self._told:
             for name, values in self._extras(outcomes):
-                infos[name], infos[f"_{name}"] = values, everywhere
+                infos[name], infos[f"_{name}"] = values, np.ones(self.num_envs, dtype=np.bool_)
         self.finished = outcomes.finished
         paid = outcomes.rewards if self._reward is None else self._rewards(self._reward, outcomes)
         for trip in self.finished:
             if trip.last_observation is not None:
-                ending = {"final_obs": trip.last_observation, "final_info": self._last_info(trip)}
+                ending = {"final_obs": trip.last_observation.copy(), "final_info": self._last_info(trip)}
                 infos = self._add_info(infos, ending, trip.index)
         self._keep(outcomes.observations)
         return outcomes.observations, paid, outcomes.terminated, outcomes.truncated, infos
@@ -202,7 +203,7 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             for name in settings.TERMS:
                 info.pop(name, None)
         if "action_mask" in info:
-            info["action_mask"] = self._options(info["action_mask"])
+            info["action_mask"] = self._options(info["action_mask"].copy())
         return info
 
     def _rewards(self, reward: Reward, outcomes: _core.Outcomes) -> NDArray[np.float64]:
@@ -214,11 +215,15 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         for trip in outcomes.finished:
             for name, values in parts.items():
                 values[trip.index] = trip.info[name]
-        paid = rewards.many(reward, parts, self.num_envs)
-        ended = outcomes.terminated | outcomes.truncated
-        begun = [index for index in outcomes.reset if not ended[index]]
-        paid = paid.copy()
-        paid[begun] = 0.0
+        driven = np.ones(self.num_envs, dtype=np.bool_)
+        driven[outcomes.reset] = False
+        driven |= outcomes.terminated | outcomes.truncated
+        paid = np.zeros(self.num_envs)
+        if driven.all():
+            paid[:] = rewards.many(reward, parts, self.num_envs)
+        elif driven.any():
+            of_driven = {name: values[driven] for name, values in parts.items()}
+            paid[driven] = rewards.many(reward, of_driven, int(driven.sum()))
         return paid
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
@@ -308,7 +313,9 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             message = f"states has {len(states)} entries, but must have {len(chosen)}"
             raise ValueError(message)
         self._core.set_states(chosen, list(states))
-        self._seeded = True
+        self._seeded[chosen] = True
+        self._last = None
+        self.finished = []
 
     def fork(self, indices: Sequence[int]) -> None:
         """Lets environment i go on from where environment `indices[i]` is now, for planners.
@@ -317,18 +324,29 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             ValueError: There is not one index for each environment, or one is out of range.
         """
         self._core.fork(list(indices))
+        self._seeded = self._seeded[list(indices)]
+        self._last = None
+        self.finished = []
 
-    def _observations(self, indices: list[int]) -> NDArray[np.float32]:
-        if self._last is None or not self._noisy:
-            return self._core.observe(list(range(self.num_envs)))
+    def _observations(self, mask: NDArray[np.bool_]) -> NDArray[np.float32]:
+        """Observations after a reset of the marked environments."""
+        indices = np.flatnonzero(mask).tolist()
+        others = np.flatnonzero(~mask).tolist()
+        if not others:
+            return self._core.observe(indices)
         # Noise is drawn once for each observation: those of the others stay as they were.
-        observations = self._last.copy()
+        observations = np.empty(self.observation_space.shape or (), dtype=np.float32)
+        observations[others] = (
+            self._last[others]
+            if self._noisy and self._last is not None
+            else self._core.observe(others, again=True)
+        )
         observations[indices] = self._core.observe(indices)
         return observations
 
     def _keep(self, observations: NDArray[np.float32]) -> None:
         if self._noisy:
-            self._last = observations
+            self._last = observations.copy()
 
     def _infos_of_reset(self, mask: NDArray[np.bool_]) -> dict[str, Any]:
         """Infos of a reset of the marked environments: nothing is paid yet."""
@@ -339,11 +357,11 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             names = (*names, *settings.TERMS)
         infos: dict[str, Any] = {}
         for name in names:
-            infos[name], infos[f"_{name}"] = np.zeros(self.num_envs), mask
+            infos[name], infos[f"_{name}"] = np.zeros(self.num_envs), mask.copy()
         if "action_mask" in self._told:
             masks = self._options(self._core.masks().view(np.int8))
             masks[~mask] = 0
-            infos["action_mask"], infos["_action_mask"] = masks, mask
+            infos["action_mask"], infos["_action_mask"] = masks, mask.copy()
         return infos
 
     def _mask(self, options: dict[str, Any] | None) -> NDArray[np.bool_]:
@@ -364,7 +382,7 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
     def _seeds(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
         if seed is None:
             return [None] * self.num_envs
-        if not isinstance(seed, Sequence | np.ndarray):
+        if not isinstance(seed, Sequence | np.ndarray) or getattr(seed, "ndim", 1) == 0:
             first = settings.whole_seed(seed)
             super().reset(seed=first)
             return [settings.core_seed(first + i) for i in range(self.num_envs)]
@@ -398,7 +416,7 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
 
     def __getstate__(self) -> dict[str, Any]:
         """What a copy needs."""
-        return {**self.__dict__, "_renderers": []}
+        return {**self.__dict__, "_renderers": [], "finished": []}
 
 
 def _at_least_one(what: str, value: object) -> int:

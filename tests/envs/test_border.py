@@ -1,6 +1,8 @@
 """What clients see of the environments: ids, infos, limits of steps, bounds, rewards, seeds."""
 
+import copy
 import logging
+import pickle
 import warnings
 from collections.abc import Mapping
 from typing import Any
@@ -14,6 +16,7 @@ from gymnasium.wrappers import TimeAwareObservation
 from stable_baselines3.common.env_checker import check_env as check_env_of_sb3
 
 import hp_gym
+from hp_gym.envs.modes import MODES
 from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
 from hp_gym.registration import LONGEST_TRIP_STEPS, ids
 
@@ -256,27 +259,31 @@ def test_a_car_wider_than_the_bounds_is_told_of_once(caplog: pytest.LogCaptureFi
 
 def plain(parts: Mapping[str, Any]) -> Any:
     """A reward for single environments and vectors alike."""
-    return (
-        -2.0 * parts["chemical_energy_kwh"] - np.square(parts["discomfort_k_h"]) + parts["reward_penalties"]
-    )
+    energy = -2.0 * parts["chemical_energy_kwh"] - parts["discomfort_k_h"] / parts["occupied_h"]
+    return 1.0 + energy + parts["reward_penalties"]
 
 
 @pytest.mark.parametrize("mode", list(AutoresetMode)[:2])
-def test_a_function_of_named_parts_is_a_reward(mode: AutoresetMode) -> None:
-    chosen: dict[str, Any] = {**SHORT, "reward": plain, "vectorization_mode": "sync"}
-    theirs = gym.make_vec("EVHeatPump-v0", num_envs=2, vector_kwargs={"autoreset_mode": mode}, **chosen)
-    ours = EVHeatPumpVectorEnv(2, autoreset_mode=mode, reward=plain, **SHORT)
+@pytest.mark.parametrize("limit", [None, 17])
+def test_a_function_of_named_parts_is_a_reward(mode: AutoresetMode, limit: int | None) -> None:
+    """It has a constant term and is not finite where nothing was driven."""
+    chosen: dict[str, Any] = {**SHORT, "reward": plain, "scenario": "jeffs2019/case1-1"}
+    if limit is not None:
+        chosen["max_episode_steps"] = limit
+    kind: dict[str, Any] = {"vectorization_mode": "sync", "vector_kwargs": {"autoreset_mode": mode}}
+    theirs: Any = gym.make_vec("EVHeatPump-v0", num_envs=2, **kind, **chosen)
+    ours: Any = gym.make_vec("EVHeatPump-v0", num_envs=2, autoreset_mode=mode, **chosen)
     theirs.reset(seed=0)
     ours.reset(seed=0)
     ours.action_space.seed(0)
-    paid = 0.0
+    ended = 0
     for _ in range(80):
         actions = ours.action_space.sample()
-        for one, other in zip(ours.step(actions), theirs.step(actions), strict=True):
+        results = ours.step(actions)
+        for one, other in zip(results, theirs.step(actions), strict=True):
             equal(one, other)
-        paid += float(ours.step(actions)[1].sum())
-        theirs.step(actions)
-    assert paid < 0.0
+        ended += int((results[2] | results[3]).sum())
+    assert ended >= 4
     assert set(ours.reset()[1]) == {key for part in hp_gym._core.reward_parts() for key in (part, f"_{part}")}
 
 
@@ -348,6 +355,123 @@ def test_an_id_that_is_not_there_is_refused_with_what_is() -> None:
         gym.make("EVHeatPumpDiscrete-v0")
     with pytest.raises(hp_gym.ConfigurationError, match="only one may be given"):
         gym.make("EVHeatPump/test-v0", scenario="jeffs2019/case1-1")
+
+
+@pytest.mark.parametrize("mode", list(AutoresetMode))
+def test_a_restored_end_is_an_end(mode: AutoresetMode) -> None:
+    """A state of a single environment knows no clock of a vector's."""
+    single: Any = gym.make("EVHeatPump-v0", scenario="jeffs2019/case1-1", **SHORT).unwrapped
+    single.reset(seed=0)
+    while single.end_reason() is None:
+        single.step(single.rule_based_action())
+    envs = EVHeatPumpVectorEnv(1, autoreset_mode=mode, scenario="jeffs2019/case1-1", **SHORT)
+    envs.set_state([single.get_state()])
+    if mode == AutoresetMode.DISABLED:
+        with pytest.raises(gym.error.ResetNeeded):
+            envs.step(envs.rule_based_actions())
+        return
+    envs.step(envs.rule_based_actions())
+    assert envs.summary(0)["duration_s"] == 0.0
+    assert envs.step(envs.rule_based_actions())[1][0] < 0.0
+
+
+def test_partial_resets_without_a_seed_draw_trips_of_their_own() -> None:
+    envs = EVHeatPumpVectorEnv(4, autoreset_mode=AutoresetMode.DISABLED)
+    envs.reset(options={"reset_mask": np.array([True, False, False, False])})
+    envs.reset(options={"reset_mask": np.array([False, True, True, True])})
+    assert len({envs.trip(index)["ambient_temperature_degc"] for index in range(4)}) == 4
+
+
+def test_a_vector_can_be_copied_after_a_step_that_ended_a_trip() -> None:
+    envs = EVHeatPumpVectorEnv(1, scenario="jeffs2019/case1-1", **SHORT)
+    envs.reset(seed=0)
+    while not envs.finished:
+        envs.step(envs.rule_based_actions())
+    for copied in (copy.deepcopy(envs), pickle.loads(pickle.dumps(envs))):
+        np.testing.assert_array_equal(copied.rule_based_actions(), envs.rule_based_actions())
+        assert copied.finished == []
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+def test_a_partial_reset_leaves_the_others_as_they_are(noise: float) -> None:
+    chosen: dict[str, Any] = {
+        "scenario": "jeffs2019/case1-1",
+        "observation_bounds": {"speed_m_s": (0.0, 1.0)},
+        "sensor_noise": noise,
+    }
+    envs = EVHeatPumpVectorEnv(2, autoreset_mode=AutoresetMode.DISABLED, **chosen)
+    single: Any = gym.make("EVHeatPump-v0", **chosen).unwrapped
+    envs.reset(seed=0)
+    single.reset(seed=0)
+    for step in range(60):
+        actions = envs.rule_based_actions()
+        seen, expected = envs.step(actions)[0], single.step(actions[0])[0]
+        np.testing.assert_array_equal(seen[0], expected)
+        seen[:] = 7.0
+        if step % 3 == 0:
+            again = envs.reset(options={"reset_mask": np.array([False, True])})[0]
+            np.testing.assert_array_equal(again[0], expected)
+    assert 0.0 < single.clipped_shares()["speed_m_s"] < 1.0
+    assert envs.clipped_shares(0) == single.clipped_shares()
+    state = envs.get_state()
+    envs.step(envs.rule_based_actions())
+    before = envs.signals(0)["cabin_temperature_degc"]
+    envs.set_state(state)
+    seen = envs.reset(options={"reset_mask": np.array([False, True])})[0]
+    assert envs.signals(0)["cabin_temperature_degc"] != before
+    assert envs.decode(seen)["time_s"][0] == pytest.approx(60.0, abs=7200.0 * 3.0 * noise + 1e-2)
+
+
+def test_what_ended_counts_its_last_observation_too() -> None:
+    chosen: dict[str, Any] = {"scenario": "jeffs2019/case1-1", **SHORT}
+    chosen["observation_bounds"] = {"time_s": (0.0, 100.0)}
+    single: Any = gym.make("EVHeatPump-v0", **chosen).unwrapped
+    single.reset(seed=0)
+    while single.end_reason() is None:
+        single.step(single.rule_based_action())
+    for mode in AutoresetMode:
+        envs = EVHeatPumpVectorEnv(1, autoreset_mode=mode, **chosen)
+        envs.reset(seed=0)
+        while not envs.finished:
+            envs.step(envs.rule_based_actions())
+        assert envs.finished[0].summary["clipped_share"] == single.summary()["clipped_share"] > 0.5
+
+
+def test_nothing_that_is_returned_is_shared() -> None:
+    envs = EVHeatPumpVectorEnv(2, autoreset_mode=AutoresetMode.SAME_STEP, info=["action_mask"], **SHORT)
+    mask = np.array([True, True])
+    infos = envs.reset(seed=0, options={"reset_mask": mask})[1]
+    mask[:] = False
+    assert all(marks.all() for name, marks in infos.items() if name.startswith("_"))
+    while not envs.finished:
+        infos = envs.step(envs.rule_based_actions())[4]
+    infos["_reward_energy"][:] = False
+    assert infos["_reward_discomfort"].all()
+    trip = envs.finished[0]
+    assert trip.last_observation is not None
+    kept = trip.last_observation.copy()
+    infos["final_obs"][trip.index][:] = 7.0
+    np.testing.assert_array_equal(trip.last_observation, kept)
+    flat: Any = gym.make("EVHeatPumpFlat-v0").unwrapped
+    flat.modes[1]["cabin"] = "chiller"
+    assert MODES[1] == {"cabin": "htc"}
+
+
+def test_a_function_gets_parts_of_its_own() -> None:
+    """The same in a single environment and in a vector, whatever else infos hold."""
+    seen: list[set[str]] = []
+
+    def greedy(parts: Any) -> Any:
+        seen.append(set(parts))
+        return -1.0 * parts.pop("reward_energy")
+
+    env: Any = gym.make("EVHeatPump-v0", reward=greedy, info=["cost"], **SHORT)
+    env.reset(seed=0)
+    assert "reward_energy" in env.step(env.action_space.sample())[4]
+    envs = EVHeatPumpVectorEnv(2, reward=greedy, info=["cost"], **SHORT)
+    envs.reset(seed=0)
+    assert "reward_energy" in envs.step(envs.action_space.sample())[4]
+    assert seen[0] == seen[1]
 
 
 def test_continuous_values_beyond_the_range_are_held() -> None:

@@ -227,15 +227,22 @@ impl Vector {
         self.begin(&indices, begins)
     }
 
-    /// Observations of environments, one row each.
-    fn observe<'py>(&mut self, py: Python<'py>, indices: Vec<usize>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+    /// Observations of environments, one row each; those that were seen before are not counted again.
+    #[pyo3(signature = (indices, again=false))]
+    fn observe<'py>(
+        &mut self,
+        py: Python<'py>,
+        indices: Vec<usize>,
+        again: bool,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let look = if again { Episode::observe_again } else { Episode::observe };
         let width = self.width();
         let array = PyArray2::zeros(py, [indices.len(), width], false);
         {
             let mut values = array.readwrite();
             for (row, &index) in values.as_slice_mut()?.chunks_mut(width).zip(&indices) {
                 self.check_index(index)?;
-                self.inner.alter(|all| all.episodes_mut()[index].observe(row)).map_err(to_python)?;
+                self.inner.alter(|all| look(&mut all.episodes_mut()[index], row)).map_err(to_python)?;
             }
         }
         Ok(array)

@@ -275,6 +275,13 @@ impl Episode {
         self.setup.observations.write(&car.observations, &look, blur, values, &mut self.clipped);
     }
 
+    /// Writes the observation of now once more, which does not count again what was clipped.
+    pub fn observe_again(&mut self, values: &mut [f32]) {
+        let clipped = self.clipped.clone();
+        self.observe(values);
+        self.clipped = clipped;
+    }
+
     /// Share of the observations of this trip in which each row was beyond its bounds, and held there.
     #[must_use]
     pub fn clipped_shares(&self) -> Vec<f64> {

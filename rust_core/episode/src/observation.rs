@@ -149,7 +149,7 @@ fn replace_bounds(rows: &mut [Observed], name: &str, low: f64, high: f64) -> Pla
         let names: Vec<&str> = rows.iter().map(|row| row.name.as_str()).collect();
         return Err(unknown("observation", name, &names));
     };
-    if !(low.is_finite() && high.is_finite() && low < high) {
+    if !(low.is_finite() && high.is_finite() && low < high && (high - low).is_finite()) {
         return Err(PlantError::InvalidArgument {
             what: format!("observation_bounds of `{name}`"),
             value: format!("({low}, {high})"),

@@ -321,6 +321,8 @@ impl Vector {
             Clock { elapsed: self.elapsed[index], over: self.over[index] } = restored.clock;
             self.episodes[index].resume(restored);
             self.begun[index] = self.episodes[index].begun();
+            // A state of a single environment knows no clock.
+            self.over[index] |= self.episodes[index].end().is_some();
         }
         Ok(())
     }
@@ -439,10 +441,11 @@ impl Job<'_> {
     fn work(&mut self, actions: Actions<'_>, autoreset: Autoreset, step_limit: Option<u64>) {
         self.fetch_ahead(0);
         (*self.reward, *self.terminated, *self.truncated) = (0.0, false, false);
-        if *self.over && autoreset == Autoreset::NextStep {
+        // Where trips are reset within the step, one that is over comes from a restored state.
+        if *self.over && autoreset != Autoreset::Disabled {
             self.begin();
         } else {
-            self.step(actions, autoreset, step_limit);
+            self.step(actions, step_limit);
         }
         self.fetch_ahead(1);
         self.episode.observe(self.observation);
@@ -450,6 +453,11 @@ impl Job<'_> {
             self.episode.write_mask(self.mask);
         }
         self.fetch_ahead(2);
+        if *self.over
+            && let Some(outcome) = self.outcome
+        {
+            self.finish(&outcome, autoreset);
+        }
     }
 
     /// Asks for a share of what will be worked on soon.
@@ -474,7 +482,7 @@ impl Job<'_> {
         what(&mut self.told.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
-    fn step(&mut self, actions: Actions<'_>, autoreset: Autoreset, step_limit: Option<u64>) {
+    fn step(&mut self, actions: Actions<'_>, step_limit: Option<u64>) {
         let table = &self.episode.setup().actions;
         let width = table.rows().len();
         let place = self.index * width..(self.index + 1) * width;
@@ -500,9 +508,6 @@ impl Job<'_> {
         *self.truncated = step_limit.is_some_and(|limit| *self.elapsed >= limit);
         *self.over = *self.terminated || *self.truncated;
         self.outcome = Some(outcome);
-        if *self.over {
-            self.finish(&outcome, autoreset);
-        }
     }
 
     /// Tells of the end of a trip, and begins the next where that is wanted at once.
@@ -520,14 +525,14 @@ impl Job<'_> {
             last_seen: None,
         };
         if autoreset == Autoreset::SameStep {
-            self.episode.observe(self.observation);
-            if !self.mask.is_empty() {
-                self.episode.write_mask(self.mask);
-            }
             finished.last_seen =
                 Some(LastSeen { observation: self.observation.to_vec(), mask: self.mask.to_vec() });
             self.outcome = None;
             self.begin();
+            self.episode.observe(self.observation);
+            if !self.mask.is_empty() {
+                self.episode.write_mask(self.mask);
+            }
         }
         self.tell(|told| told.events.finished.push(finished));
     }
