@@ -3,9 +3,8 @@
 from hp_gym import (  # isort: skip
     ctrl_c,  # noqa: F401, first: Ctrl-C may come while the rest is loaded
     processor,  # noqa: F401, second: it refuses to load an extension that cannot run here
-    native,  # noqa: F401, then: it makes the extension ready
 )
-from hp_gym._core import ConfigurationError, Experiment, Run, StateError, __version__, names
+from hp_gym._core import ConfigurationError, Experiment, InternalError, Run, StateError, __version__, names
 from hp_gym.command import encode
 from hp_gym.registration import register_envs
 from hp_gym.signals import observe
@@ -16,6 +15,7 @@ __all__ = [
     "ConfigurationError",
     "Controller",
     "Experiment",
+    "InternalError",
     "Run",
     "StateError",
     "Trajectory",

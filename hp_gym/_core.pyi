@@ -1,6 +1,6 @@
 """The compiled core of `hp_gym` (rust_core/bindings)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Final, TypeAlias, final
 
 import numpy as np
@@ -12,6 +12,7 @@ __all__ = [
     "Episode",
     "Experiment",
     "FinishedTrip",
+    "InternalError",
     "Outcomes",
     "Run",
     "StateError",
@@ -23,12 +24,14 @@ __all__ = [
     "architecture_layout",
     "config_text",
     "default_settings",
+    "looks_deep",
     "names",
     "observation_table",
     "plant_step_seconds",
     "reference_policy",
     "reference_policy_names",
     "reward_parts",
+    "reward_terms",
     "signals",
     "totals",
     "vehicle_layout",
@@ -47,6 +50,9 @@ class ConfigurationError(ValueError):
 
 class StateError(ConfigurationError):
     """A saved state that is damaged, or of something else."""
+
+class InternalError(RuntimeError):
+    """A mistake of this package; what was worked on is refused until it is reset or restored."""
 
 @final
 class Experiment:
@@ -113,8 +119,13 @@ class Experiment:
         """Limits that a run is judged by: comfort band, loop supplies, condensing pressure."""
     def encode(self, settings: dict[str, float | str]) -> NDArray[np.float32]:
         """Command of named actuators in physical units; the others have their defaults."""
-    def simulate(self) -> tuple[NDArray[np.float64], dict[str, float], str]:
-        """Runs with the rule-based controller: a row of signals a second, totals, reason of the end."""
+    def simulate(
+        self, check: Callable[[], object] | None = None
+    ) -> tuple[NDArray[np.float64], dict[str, float], str]:
+        """Runs with the rule-based controller: a row of signals a second, totals, reason of the end.
+
+        Signals are seen on the way; `check` is called every now and then, and what it raises ends the run.
+        """
     def totals(self) -> tuple[dict[str, float], str]:
         """Runs with the rule-based controller: totals and reason of the end only."""
     def start(self) -> Run:
@@ -155,14 +166,16 @@ class Episode:
         """Name, unit, options (empty for levels) and description of each action."""
     def observation_rows(self) -> _Observed:
         """Name, unit, low, high and meaning of every row of an observation."""
+    def narrow_rows(self) -> list[tuple[str, str, float, float]]:
+        """Rows whose bounds a vehicle can leave: vehicle, row, upper bound, what the vehicle can reach."""
     def signal_names(self) -> tuple[str, ...]:
         """Names of all signals of the vehicle of the trip."""
     def layout(self) -> dict[str, Any]:
         """What the vehicle of the trip is made of."""
-    def seed(self, seed: int) -> None:
-        """Starts the random numbers anew."""
-    def reset(self, scenario: str | None = None, distribution: str | None = None) -> tuple[_Floats, _Info]:
-        """Begins a trip; a scenario or distribution holds for this one only."""
+    def reset(
+        self, scenario: str | None = None, distribution: str | None = None, seed: int | None = None
+    ) -> tuple[_Floats, _Info]:
+        """Begins a trip; a scenario or distribution holds for it only, a seed starts random numbers anew."""
     def step(self, action: NDArray[Any]) -> tuple[_Floats, float, bool, bool, _Info]:
         """Drives on for one control interval."""
     def action_masks(self) -> _Bools:
@@ -179,6 +192,12 @@ class Episode:
         """KPIs of the trip so far."""
     def summary(self) -> dict[str, float]:
         """Totals of the trip so far, as `simulate` gives them."""
+    def trip(self) -> dict[str, Any]:
+        """What the trip is: scenario, vehicle, cycle, part of it, duration, ambient temperature."""
+    def end_reason(self) -> str | None:
+        """Why the trip is over; None while it is not."""
+    def clipped_shares(self) -> dict[str, float]:
+        """Share of the observations of the trip in which each row was beyond its bounds."""
     def get_state(self) -> bytes:
         """Everything that the future depends on."""
     def set_state(self, state: bytes) -> None:
@@ -194,8 +213,20 @@ class FinishedTrip:
     def index(self) -> int:
         """Environment."""
     @property
+    def end_reason(self) -> str | None:
+        """Why it ended; None where the limit of steps cut it off."""
+    @property
+    def trip(self) -> dict[str, Any]:
+        """What it was: scenario, vehicle, cycle, part of it, duration, ambient temperature."""
+    @property
+    def kpis(self) -> dict[str, float]:
+        """Its KPIs."""
+    @property
+    def summary(self) -> dict[str, float]:
+        """Its totals, as `simulate` gives them."""
+    @property
     def info(self) -> _Info:
-        """Parts of its last reward; reason of its end and KPIs, unless it was cut off."""
+        """Info of its last step."""
     @property
     def last_observation(self) -> _Floats | None:
         """Its last observation, where the environment was reset at once."""
@@ -220,14 +251,20 @@ class Outcomes:
     def parts(self) -> NDArray[np.float64]:
         """Parts of the rewards, one row a part."""
     @property
+    def costs(self) -> NDArray[np.float64] | None:
+        """Costs, if wanted."""
+    @property
+    def terms(self) -> NDArray[np.float64] | None:
+        """Terms of the step, one row a term, if wanted."""
+    @property
+    def masks(self) -> _Bools | None:
+        """Options that would be granted next, one row an environment, if wanted."""
+    @property
     def finished(self) -> list[FinishedTrip]:
         """Trips that are over."""
     @property
     def reset(self) -> list[int]:
         """Environments that were reset."""
-    @property
-    def trips(self) -> _Info:
-        """What is told of their trips: a list or array by name."""
 
 @final
 class Vector:
@@ -250,17 +287,16 @@ class Vector:
         seeds: Sequence[int | None],
         scenarios: Sequence[str | None],
         distributions: Sequence[str | None],
-    ) -> _Info:
-        """Resets environments, each with its seed and, just this once, its scenario or distribution.
-
-        Tells of their trips: a list or array by name, one entry for each of them.
-        """
-    def observe(self, indices: Sequence[int]) -> _Floats:
-        """Observations of environments, one row each."""
+    ) -> None:
+        """Resets environments, each with its seed and, just this once, its scenario or distribution."""
+    def observe(self, indices: Sequence[int], again: bool = False) -> _Floats:
+        """Observations of environments, one row each; those seen before are not counted again."""
     def step(self, action: NDArray[Any]) -> Outcomes:
         """Drives all environments on for one control interval."""
     def action_masks(self) -> _Bools:
         """Options that would be granted in the coming second, one row an environment."""
+    def masks(self) -> _Bools:
+        """The same, all options where no trip has begun."""
     def rule_based_actions(self) -> NDArray[Any]:
         """What the rule-based controllers would do next, one row an environment."""
     def option_counts(self) -> list[int]:
@@ -269,6 +305,8 @@ class Vector:
         """Name, unit, options (empty for levels) and description of each action."""
     def observation_rows(self) -> _Observed:
         """Name, unit, low, high and meaning of every row of an observation."""
+    def narrow_rows(self) -> list[tuple[str, str, float, float]]:
+        """Rows whose bounds a vehicle can leave: vehicle, row, upper bound, what the vehicle can reach."""
     def signal_names(self, index: int) -> tuple[str, ...]:
         """Names of all signals of the vehicle of an environment's trip."""
     def layout(self, index: int) -> dict[str, Any]:
@@ -281,6 +319,12 @@ class Vector:
         """KPIs of the present trip of an environment."""
     def summary(self, index: int) -> dict[str, float]:
         """Totals of the present trip of an environment, as `simulate` gives them."""
+    def trip(self, index: int) -> dict[str, Any]:
+        """What the present trip is: scenario, vehicle, cycle, part of it, duration, ambient temperature."""
+    def end_reason(self, index: int) -> str | None:
+        """Why the present trip is over; None while it is not."""
+    def clipped_shares(self, index: int) -> dict[str, float]:
+        """Share of the observations of the present trip in which each row was beyond its bounds."""
     def fork(self, indices: Sequence[int]) -> None:
         """Lets every environment go on from where another one is now."""
     def get_state(self, index: int) -> bytes:
@@ -295,6 +339,9 @@ def observation_table() -> list[tuple[tuple[str, str, float, float, str], bool]]
 
 def reward_parts() -> list[str]:
     """Names of the parts of a reward."""
+
+def reward_terms() -> list[str]:
+    """Names of the terms, in physical units, that rewards and KPIs are counted from."""
 
 def action_groups() -> list[tuple[str, list[str]]]:
     """Groups of actuators (`default`, `hpcu`, `all`), and the names of those of the default architecture."""
@@ -331,6 +378,9 @@ def signals(name: str = ...) -> _Signals:
 
 def actuators(name: str = ...) -> _Actuators:
     """Name, unit, options (empty for levels) and description of every actuator of an architecture."""
+
+def looks_deep(text: str) -> bool:
+    """Whether a TOML text goes deeper than any file may, found without parsing it."""
 
 def names(kind_word: str) -> list[str]:
     """Names of the compiled-in files of a kind: `scenario`, `vehicle`, `architecture`, `drive cycle`, ..."""

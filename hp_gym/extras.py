@@ -16,6 +16,7 @@ EXTRAS: Final[Mapping[str, tuple[str, ...]]] = {
     "benchmark": (
         "jinja2", "pandas", "plotly", "pyarrow", "pydantic", "safetensors", "threadpoolctl", "tomlkit"
     ),
+    "data": ("h5py", "minari", "PIL", "pydantic", "safetensors"),
     "export": ("onnx", "onnxruntime", "pydantic", "safetensors"),
     "plot": ("matplotlib", "PIL"),
     "speed": ("fastsim",),

@@ -7,7 +7,6 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from hp_gym import native
 from hp_gym._core import Experiment, Run
 from hp_gym.overrides import Overrides, assignments
 from hp_gym.trajectory import Trajectory
@@ -57,7 +56,7 @@ def simulate(
     else:
         chosen = None if controller is None else os.fspath(controller)
         experiment = Experiment(scenario, chosen, changes, substeps, car)
-        values, summary, end_reason = native.simulate(experiment, substeps)
+        values, summary, end_reason = experiment.simulate()
         name = chosen or experiment.controller
     return Trajectory(
         scenario=scenario,

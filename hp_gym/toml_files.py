@@ -63,11 +63,14 @@ def loads(text: str, name: str) -> dict[str, Any]:
     Raises:
         FileError: It is too deep or no TOML.
     """
+    too_deep = f"{name}: more than {DEEPEST} tables or lists within each other"
+    # The time that the parser takes for a dotted key grows with the square of its parts.
+    if _core.looks_deep(text):
+        raise FileError(too_deep)
     try:
         tables = tomllib.loads(text)
     except RecursionError:
-        message = f"{name}: more than {DEEPEST} tables or lists within each other"
-        raise FileError(message) from None
+        raise FileError(too_deep) from None
     # Numbers of thousands of digits are a plain ValueError.
     except ValueError as error:
         message = f"{name}: {error}"

@@ -31,7 +31,8 @@ class Trajectory:
         scenario: Name or path of the scenario.
         controller: Name of the controller.
         end_reason: `arrived`, `unserved_energy` or `battery_empty`.
-        summary: Totals by name; a name ends with its unit.
+        summary: Totals by name; a name ends with its unit. NaN, in JSON null, where one does not exist,
+            as energy per distance of a trip of 0 km.
         limits: Limits that the run is judged by.
         values: One row a second, one column a signal; not to be written to.
         signals: Name, unit and description of each column; those of the default architecture by default.

@@ -48,15 +48,15 @@ bands = [
 """
 TRAINING: Final = """
 algorithm = "ppo"
-total_decisions = 4096
-checkpoint_interval_decisions = 512
+total_decisions = {total_decisions}
+checkpoint_interval_decisions = {checkpoint_interval_decisions}
 torch_threads = 1
-environments = { number = 8, threads = 1 }
-environment = { control_interval_s = 60 }
-learning_rate = { start = 1e-2 }
-network = { hidden_sizes = [8, 8] }
-validation = { interval_decisions = 1024, trips = 2 }
-hyperparameters = { n_steps = 32, batch_size = 128, n_epochs = 2, gamma = 0.9 }
+environments = {{ number = 8, threads = 1 }}
+environment = {{ control_interval_s = 60 }}
+learning_rate = {{ start = 1e-2 }}
+network = {{ hidden_sizes = [8, 8] }}
+validation = {{ interval_decisions = {validation_interval_decisions}, trips = 2 }}
+hyperparameters = {{ n_steps = 32, batch_size = 128, n_epochs = 2, gamma = 0.9 }}
 """
 
 Contents = dict[str, str]
@@ -73,6 +73,15 @@ class Tally:
         """Notes what does not hold."""
         if not holds:
             self.wrong.append(what)
+
+
+def training(total: int = 4096, checkpoint_interval: int = 512, validation_interval: int = 1024) -> str:
+    """Returns the configuration of a training that takes a moment; all in decisions."""
+    return TRAINING.format(
+        total_decisions=total,
+        checkpoint_interval_decisions=checkpoint_interval,
+        validation_interval_decisions=validation_interval,
+    )
 
 
 def contents(folder: Path) -> Contents:
@@ -209,7 +218,7 @@ def file_faults(place: Path, tally: Tally) -> None:
 def commands(place: Path) -> dict[str, list[str]]:
     """Commands that write results, each with a folder of its own."""
     (place / "grid.toml").write_text(GRID, encoding="utf-8")
-    (place / "training.toml").write_text(TRAINING, encoding="utf-8")
+    (place / "training.toml").write_text(training(), encoding="utf-8")
     return {
         "benchmark": [
             "benchmark",

@@ -29,8 +29,8 @@ def frames(scenario: str, duration_s: float, size: tuple[int, int]) -> list[NDAr
         render_size=size,
     )
     policy = HpcuPolicy(env)
-    _, info = env.reset()
-    every = max(1, round(info["trip_s"] / (duration_s * FRAMES_PER_S)))
+    env.reset()
+    every = max(1, round(env.get_wrapper_attr("trip")()["duration_s"] / (duration_s * FRAMES_PER_S)))
     pictures = [np.asarray(env.render())]
     second, over = 0, False
     while not over:

@@ -109,6 +109,7 @@ def test_the_bare_package_makes_environments(tmp_path: Path) -> None:
         (["calibrate"], "studies"),
         (["tune"], "studies"),
         (["train"], "train"),
+        (["record", "hpcu"], "data"),
         (["export", "policy.safetensors", "--out", "policy.onnx"], "export"),
     ],
     ids=" ".join,
@@ -135,6 +136,7 @@ def test_a_command_without_its_extra_says_in_one_line_how_to_get_it(
         ("import hp_gym.agents.policies", "benchmark"),
         ("import hp_gym.agents.controllers", "benchmark"),
         ("import hp_gym.agents.training.train", "train"),
+        ("import hp_gym.agents.recording", "data"),
         ("import hp_gym.studies.benchmark.request", "benchmark"),
         ("import hp_gym.studies.calibration.fit", "studies"),
         ("import hp_gym.studies.tuning.search", "studies"),
@@ -160,6 +162,7 @@ def test_a_part_without_its_extra_raises_an_error_that_names_it(
     ("names", "modules"),
     [
         (["benchmark"], ["cli.benchmark_command", "studies.benchmark.request", "studies.benchmark.table"]),
+        (["data"], ["agents.recording", "cli.record_command"]),
         (["export"], ["agents.policies.equality", "agents.policies.onnx_file"]),
         (["plot"], ["pictures.plotting", "pictures.rendering", "studies.reproduction.figures"]),
         (

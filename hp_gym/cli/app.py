@@ -9,6 +9,7 @@ from hp_gym.cli.benchmark_command import benchmark
 from hp_gym.cli.calibrate_command import calibrate
 from hp_gym.cli.export_command import export
 from hp_gym.cli.output import one_line_for_missing_packages
+from hp_gym.cli.record_command import record
 from hp_gym.cli.reproduce_command import reproduce
 from hp_gym.cli.run_command import run
 from hp_gym.cli.scenarios_command import scenarios
@@ -33,6 +34,7 @@ for command, kept in (
     (tune, "trials so far are kept, and the same command goes on with them"),
     (train, "nothing was written"),
     (export, _AS_BEFORE),
+    (record, _AS_BEFORE),
     (speed, ""),
 ):
     app.command()(interrupts.stoppable(one_line_for_missing_packages(command), kept))

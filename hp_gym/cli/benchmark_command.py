@@ -1,5 +1,6 @@
 """`hp-gym benchmark`: controllers compared over held-out trips."""
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated
 
@@ -14,8 +15,9 @@ def benchmark(
         list[str] | None,
         typer.Argument(
             metavar="[CONTROLLER]...",
-            help="off, random, ptc-only, hpcu, hpcu-best-mode, hpcu-tuned, ppo, a policy or controller file, "
-            "or module:Class; all named ones by default. The rules that others are compared with always run.",
+            help="off, random, ptc-only, hpcu, hpcu-best-mode, hpcu-tuned, ppo, a policy file (.zip if "
+            "allowed), a controller file, or module:Class; all named ones by default. The rules that others "
+            "are compared with always run.",
             show_default=False,
         ),
     ] = None,
@@ -26,15 +28,25 @@ def benchmark(
         str | None, typer.Option(help="Training seeds of ppo, for example 0,2; all by default.")
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of random actions and of resamples.")] = 0,
+    allow_code: Annotated[
+        bool,
+        typer.Option(
+            "--allow-code",
+            help="Load zip files of stable-baselines3, which can run code. They are taken as trained on "
+            "EVHeatPump-v0 or EVHeatPumpContinuous-v0 with its defaults; `hp-gym export` converts others.",
+        ),
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
 ) -> None:
     """Drives controllers over held-out trips and reports how much a learned one gains over rules."""
     from hp_gym.studies.benchmark import request
     from hp_gym.studies.benchmark.table import tables
 
+    warn_of_code([name for name in controllers or [] if allow_code and name.endswith(".zip")])
     try:
         done = request.carry_out(
-            request.Request(controllers, grid, _seeds(seeds), seed, out), console=progress_console
+            request.Request(controllers, grid, training_seeds(seeds), seed, out, allow_code),
+            console=progress_console,
         )
     except (ValueError, OSError) as error:
         fail(error)
@@ -50,7 +62,18 @@ def benchmark(
         console.print(f"Written: {out}", markup=False, soft_wrap=True)
 
 
-def _seeds(text: str | None) -> list[int] | None:
+def warn_of_code(files: Collection[str]) -> None:
+    """Tells what it means that zip files are loaded, if any is."""
+    if not files:
+        return
+    from hp_gym.agents.policies.sb3_zip import WARNING
+
+    taken = f"Taken as trained with an id's defaults, a decision a second: {', '.join(files)}."
+    progress_console.print(f"Warning: {WARNING}. {taken}", soft_wrap=True, markup=False)
+
+
+def training_seeds(text: str | None) -> list[int] | None:
+    """Reads whole numbers with commas between them."""
     if text is None:
         return None
     try:

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hp_gym import _core
-from hp_gym.envs import settings
+from hp_gym.envs import rewards, settings
 
 if TYPE_CHECKING:
+    from hp_gym.envs.rewards import Reward
     from hp_gym.envs.settings import Action, Keywords, Name
     from hp_gym.pictures.rendering import Renderer
     from hp_gym.pictures.window import Window
@@ -47,12 +48,19 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     | 6   | ptc              | off, allowed                    |
     | 7   | compressor_power | off, 10 levels                  |
 
-    The levels of the compressor run evenly in the logarithm from its lowest to its full power. With
-    `continuous=True` the space is a `Box` in [-1, 1] with the same rows: options are equal parts of the
-    range, the compressor is off below -0.9. Other rows of the actuator table (`hp_gym.command.ACTUATORS`:
-    shares of recirculated air, blower, coolant flows, requested heat flows, valves, set point of the PTC) can
-    be added by name; as levels they have 11. A row that the agent does not control does what scenario and
-    rule-based controller give it.
+    The levels of the compressor run evenly in the logarithm from its lowest to its full power. An action is
+    held for `control_interval_s`, 1 s by default; the reference policies decide every 10 s. Other ids have
+    other spaces for the same plant:
+
+    - `EVHeatPumpContinuous-v0`: a `Box` in [-1, 1] with the same rows. Options are equal parts of the range,
+      the compressor is off below -0.9; values beyond are held at its ends.
+    - `EVHeatPumpFlat-v0`: `Discrete`, one choice among modes (`hp_gym.envs.modes.MODES`, or `modes=`).
+    - `EVHeatPumpMO-v0`: as the default, its reward a vector.
+    - `EVHeatPump/train-v1`, `EVHeatPump/test-v0`, ...: as the default, on the trips of one distribution.
+
+    Other rows of the actuator table (`hp_gym.command.ACTUATORS`: shares of recirculated air, blower, coolant
+    flows, requested heat flows, valves, set point of the PTC) can be added by name; as levels they have 11. A
+    row that the agent does not control does what scenario and rule-based controller give it.
 
     `action_masks()` marks the options that the plant would grant in the coming second, flat, as MaskablePPO
     of sb3-contrib expects.
@@ -63,9 +71,9 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
 
     | Num | Observation                     | Unit | Low     | High   |
     |-----|---------------------------------|------|---------|--------|
-    | 0   | time_s                          | s    | 0       | 3600   |
-    | 1   | speed_m_s                       | m/s  | 0       | 40     |
-    | 2   | traction_power_w                | W    | -100000 | 100000 |
+    | 0   | time_s                          | s    | 0       | 7200   |
+    | 1   | speed_m_s                       | m/s  | 0       | 50     |
+    | 2   | traction_power_w                | W    | -200000 | 200000 |
     | 3   | ambient_temperature_degc        | degC | -40     | 50     |
     | 4   | cabin_temperature_degc          | degC | -40     | 80     |
     | 5   | battery_temperature_degc        | degC | -40     | 60     |
@@ -79,24 +87,24 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     | 13  | htc_flow_kg_s                   | kg/s | 0       | 0.5    |
     | 14  | chiller_flow_kg_s               | kg/s | 0       | 0.5    |
     | 15  | condensing_pressure_bar         | bar  | 0       | 32     |
-    | 16  | evaporating_pressure_bar        | bar  | 0       | 10     |
-    | 17  | discharge_temperature_degc      | degC | -40     | 140    |
+    | 16  | evaporating_pressure_bar        | bar  | 0       | 16     |
+    | 17  | discharge_temperature_degc      | degC | -40     | 160    |
     | 18  | compressor_speed_rev_s          | rev/s | 0      | 150    |
     | 19  | soc                             | -    | 0       | 1      |
     | 20  | battery_charge_limit_w          | W    | 0       | 150000 |
     | 21  | battery_discharge_limit_w       | W    | 0       | 250000 |
-    | 22  | battery_power_w                 | W    | -100000 | 100000 |
-    | 23  | compressor_power_w              | W    | 0       | 5000   |
-    | 24  | ptc_power_w                     | W    | 0       | 6000   |
-    | 25  | auxiliary_power_w               | W    | 0       | 1500   |
-    | 26  | condenser_heat_flow_w           | W    | 0       | 15000  |
-    | 27  | evaporator_heat_flow_w          | W    | 0       | 15000  |
+    | 22  | battery_power_w                 | W    | -200000 | 200000 |
+    | 23  | compressor_power_w              | W    | 0       | 8000   |
+    | 24  | ptc_power_w                     | W    | 0       | 8000   |
+    | 25  | auxiliary_power_w               | W    | 0       | 2000   |
+    | 26  | condenser_heat_flow_w           | W    | 0       | 20000  |
+    | 27  | evaporator_heat_flow_w          | W    | 0       | 20000  |
     | 28  | cabin_htc_heat_flow_w           | W    | -10000  | 10000  |
     | 29  | cabin_chiller_heat_flow_w       | W    | -10000  | 10000  |
     | 30  | battery_htc_heat_flow_w         | W    | -10000  | 10000  |
     | 31  | battery_chiller_heat_flow_w     | W    | -10000  | 10000  |
-    | 32  | ambient_htc_heat_flow_w         | W    | -15000  | 15000  |
-    | 33  | ambient_chiller_heat_flow_w     | W    | -15000  | 15000  |
+    | 32  | ambient_htc_heat_flow_w         | W    | -30000  | 30000  |
+    | 33  | ambient_chiller_heat_flow_w     | W    | -30000  | 30000  |
     | 34  | motor_chiller_heat_flow_w       | W    | -10000  | 10000  |
     | 35  | transmission_chiller_heat_flow_w | W   | -10000  | 10000  |
     | 36  | solar_gain_w                    | W    | 0       | 1500   |
@@ -120,6 +128,9 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     | 54  | previous_ptc                    | -    | -1      | 1      |
     | 55  | previous_compressor_power       | -    | -1      | 1      |
 
+    Bounds hold for every built-in car with the default actions. `decode(observation)` gives plain units,
+    `clipped_shares()` says how often a value was beyond its bounds.
+
     This is what a car without navigation can know. Further rows by name: `preview` (the speed 2 to 80 s
     ahead), `time_left_s`, and every other signal of the plant (`hp_gym._core.observation_table()`).
 
@@ -140,7 +151,21 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
       outside its window and for stops of the compressor that a protection forced.
 
     `reward` chooses among `balanced`, `energy`, `comfort`, `stored-heat` and `durable`, a file, or single
-    weights (`{"base": "balanced", "discomfort_per_k_h": 8.0}`).
+    weights (`{"base": "balanced", "discomfort_per_k_h": 8.0}`). A Python function of named parts is a reward
+    too (`hp_gym.envs.rewards.Reward`); in `EVHeatPumpMO-v0` the reward is the vector of the four parts.
+
+    ## Info
+
+    Numbers, the same keys at every reset and step: the four parts of the reward (0 at a reset). On request
+    (`info=["cost", "action_mask", "terms"]`) also
+
+    - `cost`, for agents that are held to a limit: K h between cabin and 22 degC while somebody is in the car,
+      K h of the battery outside its window, and 1 for each stop of the compressor that a protection forced
+      and for a trip that ends before arrival;
+    - `action_mask`: `action_masks()` as int8;
+    - the terms in physical units that reward and KPIs are counted from.
+
+    What trip it is, why it ended, its KPIs and totals: `trip()`, `end_reason()`, `kpis()`, `summary()`.
 
     ## Starting State
 
@@ -151,12 +176,13 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
 
     ## Episode End
 
-    1. Termination: arrival at the end of the cycle, with the credit for heat left. `info["end_reason"]` is
-       `arrived`, `info["kpis"]` holds the KPIs of the trip.
+    1. Termination: arrival at the end of the cycle, with the credit for heat left. `end_reason()` is
+       `arrived`, `kpis()` are the KPIs of the trip.
     2. Termination: `unserved_energy`, the battery could not deliver what driving needed.
     3. Termination: `battery_empty`.
 
-    The environment itself never truncates; `max_episode_steps` of `gymnasium.make` does.
+    The environment itself never truncates; `max_episode_steps` of `gymnasium.make` and `make_vec` does. Its
+    registered value is that of the longest cycle there can be, which cuts no trip.
 
     ## Arguments
 
@@ -174,11 +200,13 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     | `distribution`       | `"train-v1"` | name or path of a distribution that trips are drawn from         |
     | `render_size`        | `(960, 540)` | width and height of the picture                                  |
     | `vehicle`            | `None`       | name or path of a vehicle; that of the scenario by default       |
-    | `continuous`         | `False`      | `Box` instead of `MultiDiscrete`                                 |
+    | `continuous`         | `False`      | `Box` instead of `MultiDiscrete` (`EVHeatPumpContinuous-v0`)     |
     | `actions`            | `"default"`  | `"default"`, `"hpcu"`, `"all"` or names of actuators             |
     | `action_options`     | `None`       | options of choices by name, in an order of one's own             |
     | `observations`       | `"default"`  | names of rows or groups (`"default"`, `"preview"`)               |
-    | `reward`             | `"balanced"` | name or path of a reward, or a mapping of weights                |
+    | `observation_bounds` | `None`       | lowest and highest value of rows by name, for a wider car        |
+    | `info`               | `[]`         | what infos also hold: `cost`, `action_mask`, `terms`             |
+    | `reward`             | `"balanced"` | name or path of a reward, a mapping of weights, or a function    |
     | `control_interval_s` | `1`          | seconds for which an action is held                              |
     | `sensor_noise`       | `0.0`        | standard deviation on measured rows, in units of half the range  |
     | `overrides`          | `None`       | single values of vehicle, controller and scenario to change      |
@@ -196,9 +224,12 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     ignored (an option acts as the first of its row: isolated, closed, off) and masked but for the first
     option of a row, and an observation reads as 0 in its own unit, held within its bounds, without noise.
 
+    A trip that ends within a step of a vector stands in `finished` until the next step: environment, reason,
+    KPIs, totals, what it was.
+
     ## Version History
 
-    * v0: Initial version
+    * v0: see `docs/versions.md` for what an id's number means, and for what changed
     """
 
     # Gymnasium declares it so.
@@ -228,6 +259,12 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
         if trips == (None, None):
             trips = (None, settings.DEFAULT_DISTRIBUTION)
         self._episode = _core.Episode(settings.to_json(**chosen), *trips)
+        reward = chosen.get("reward")
+        self._reward: Reward | None = reward if callable(reward) else None
+        # Nothing to do after a step, which is as quick as a call.
+        self._plain = self._reward is None and render_mode != "human"
+        self._told = settings.told(chosen)
+        settings.tell_of_narrow_rows(self._episode)
         self.option_names = settings.option_names(self._episode)
         self.action_names = tuple(self.option_names)
         self._seeded = False
@@ -249,31 +286,48 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
         Raises:
             ConfigurationError: There is no such option, scenario or distribution.
         """
+        seed = None if seed is None else settings.whole_seed(seed)
         super().reset(seed=seed)
         trips = settings.source(*settings.once(options))
+        fresh = None
         if seed is not None:
-            self._episode.seed(settings.core_seed(seed))
+            fresh = settings.core_seed(seed)
         elif not self._seeded:
-            self._episode.seed(int(self.np_random.integers(2**63)))
+            fresh = int(self.np_random.integers(2**63))
+        observation, info = self._episode.reset(*trips, fresh)
         self._seeded = True
-        result = self._episode.reset(*trips)
+        if self._reward is not None:
+            self._hide_terms(info)
         if self.render_mode == "human":
             self.render()
-        return result
+        return observation, info
 
     def step(self, action: Action) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Drives on for one control interval.
 
         Raises:
-            ValueError: The action has the wrong shape or holds a value that is not allowed.
+            ValueError: The action has the wrong shape or holds a value that is not allowed, or the reward
+                that was given as a function is not one finite number.
             TypeError: The action is of the wrong type.
             ResetNeeded: No trip has begun, or it has ended.
         """
-        if self.render_mode != "human":
-            return self._episode.step(action)
         result = self._episode.step(action)
-        self.render()
+        if self._plain:
+            return result
+        if self._reward is not None:
+            observation, _, terminated, truncated, info = result
+            parts = {name: info[name] for name in (*settings.PARTS, *settings.TERMS)}
+            result = observation, rewards.one(self._reward, parts), terminated, truncated, info
+            self._hide_terms(info)
+        if self.render_mode == "human":
+            self.render()
         return result
+
+    def _hide_terms(self, info: dict[str, Any]) -> None:
+        """Takes out of an info what only the reward needed."""
+        if "terms" not in self._told:
+            for name in settings.TERMS:
+                del info[name]
 
     def render(self) -> NDArray[np.uint8] | None:
         """Draws the plant as it is now; returns the picture if `render_mode` is `rgb_array`."""
@@ -327,12 +381,45 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
         """Returns the present value of every signal of the plant by name."""
         return dict(zip(self._episode.signal_names(), self._episode.look().tolist(), strict=True))
 
+    def decode(self, observation: NDArray[np.float32]) -> dict[str, NDArray[np.float64]]:
+        """Returns an observation, or many, in the units of its rows, by name.
+
+        Args:
+            observation: As `reset` and `step` give it; the last axis holds the rows.
+
+        Raises:
+            ValueError: It has the wrong shape.
+        """
+        return settings.decode(self._episode, observation)
+
+    def trip(self) -> dict[str, Any]:
+        """Returns what the trip is.
+
+        `scenario` (for drawn trips that of the distribution), `vehicle`, `cycle`, `window_s` (the part of the
+        cycle that is driven, None for the whole), `duration_s`, `ambient_temperature_degc`.
+        """
+        return self._episode.trip()
+
+    def end_reason(self) -> str | None:
+        """Returns `arrived`, `unserved_energy` or `battery_empty` once the trip is over, None before."""
+        return self._episode.end_reason()
+
+    def clipped_shares(self) -> dict[str, float]:
+        """Returns the share of this trip's observations in which each row was beyond its bounds."""
+        return self._episode.clipped_shares()
+
     def kpis(self) -> dict[str, float]:
-        """Returns the KPIs of the trip so far; the score is the sum of all rewards."""
+        """Returns the KPIs of the trip so far; the score is the sum of all rewards.
+
+        Where the reward is a function, the score is that of the default reward.
+        """
         return self._episode.kpis()
 
     def summary(self) -> dict[str, float]:
-        """Returns the totals of the trip so far, those that `hp_gym.simulate` gives."""
+        """Returns the totals of the trip so far, those that `hp_gym.simulate` gives.
+
+        And `clipped_share`, the share of observations in which a value was beyond its bounds.
+        """
         return self._episode.summary()
 
     def get_state(self) -> bytes:

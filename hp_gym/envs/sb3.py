@@ -9,6 +9,7 @@ from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
 from hp_gym import extras
+from hp_gym.envs import settings
 from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
 
 with extras.needed("train"):
@@ -22,7 +23,8 @@ class SB3VecEnv(VecEnv):
     """An `EVHeatPumpVectorEnv` as stable-baselines3 and sb3-contrib want it.
 
     Trips are reset within the step that ends them; `terminal_observation` and `TimeLimit.truncated` are in
-    the infos, as algorithms need them to bootstrap.
+    the infos, as algorithms need them to bootstrap. `venv.finished` tells of the trips that ended in the
+    last step.
 
     Args:
         num_envs: Number of environments.
@@ -32,6 +34,9 @@ class SB3VecEnv(VecEnv):
     def __init__(self, num_envs: int = 1, **kwargs: Any) -> None:
         self.venv = EVHeatPumpVectorEnv(num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **kwargs)
         self.render_mode = self.venv.render_mode
+        told = settings.told(kwargs)
+        asked = [name for name in told if name != "terms"] + (list(settings.TERMS) if "terms" in told else [])
+        self._asked = [key for name in asked for key in (name, f"_{name}")]
         self._actions: NDArray[Any] = np.empty(0)
         self._returns = np.zeros(num_envs)
         self._lengths = np.zeros(num_envs, dtype=np.int64)
@@ -49,6 +54,9 @@ class SB3VecEnv(VecEnv):
         self._returns[:], self._lengths[:] = 0.0, 0
         return observations
 
+    def _nothing(self) -> list[dict[str, Any]]:
+        return [{} for _ in range(self.num_envs)]
+
     def step_async(self, actions: NDArray[Any]) -> None:
         """Takes the actions of the coming step."""
         self._actions = actions
@@ -61,9 +69,9 @@ class SB3VecEnv(VecEnv):
         done = terminated | truncated
         self._returns += rewards
         self._lengths += 1
-        told: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
-        # Where all trips have ended, the parts are in their last infos only.
-        self.discomfort_rewards = np.array(infos.get(DISCOMFORT, np.zeros(self.num_envs)))
+        # The parts of rewards are left to the ends of trips: so many dictionaries would cost more than steps.
+        told = self._split({key: infos[key] for key in self._asked}) if self._asked else self._nothing()
+        self.discomfort_rewards = infos[DISCOMFORT].copy()
         for index in np.flatnonzero(done).tolist():
             final = _one(infos["final_info"], index)
             final["terminal_observation"] = infos["final_obs"][index]
@@ -112,8 +120,8 @@ class SB3VecEnv(VecEnv):
     ) -> list[Any]:
         """Calls a method of environments.
 
-        `action_masks`, `rule_based_action`, `get_state`, `set_state`, `signals`, `kpis` and `summary` are
-        those of the single environment.
+        `action_masks`, `rule_based_action`, `get_state`, `set_state`, `signals`, `kpis`, `summary`, `trip`,
+        `end_reason` and `clipped_shares` are those of the single environment.
 
         Raises:
             AttributeError: There is no such method.
@@ -131,7 +139,7 @@ class SB3VecEnv(VecEnv):
             case "set_state":
                 self.venv.set_state([method_args[0]] * len(chosen), chosen)
                 return [None] * len(chosen)
-            case "signals" | "kpis" | "summary":
+            case "signals" | "kpis" | "summary" | "trip" | "end_reason" | "clipped_shares":
                 return [getattr(self.venv, method_name)(index, **method_kwargs) for index in chosen]
         message = f"the environments have no method `{method_name}` that can be called one by one"
         raise AttributeError(message)

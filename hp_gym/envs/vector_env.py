@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import logging
 import os
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final, Unpack
 
 import numpy as np
@@ -11,13 +13,14 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from hp_gym import _core
-from hp_gym.envs import settings
+from hp_gym.envs import rewards, settings
 from hp_gym.envs.env import EVHeatPumpEnv
 from hp_gym.memory import shortage
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator
 
+    from hp_gym.envs.rewards import Reward
     from hp_gym.envs.settings import Action, Name, SharedKeywords
     from hp_gym.pictures.rendering import Renderer
 
@@ -26,8 +29,7 @@ _LEAST_BYTES: Final = 4096
 
 _THREADS_A_CORE: Final = 4
 
-_PARTS = tuple(_core.reward_parts())
-_PART_KEYS = tuple((name, f"_{name}") for name in _PARTS)
+_LOG: Final = logging.getLogger(__name__)
 
 
 class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
@@ -36,7 +38,7 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
     Args:
         num_envs: Number of environments.
         render_mode: `"rgb_array"` or None; `render()` returns a picture of each environment.
-        max_episode_steps: Steps after which a trip is cut off.
+        max_episode_steps: Steps after which a trip is cut off; none by default, or for -1.
         autoreset_mode: `NEXT_STEP`, `SAME_STEP` or `DISABLED`, or its value.
         threads: Number of threads; as many as there are cores by default, at most one an environment and four
             a core. Results do not depend on it.
@@ -45,6 +47,10 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         vehicle: One for all environments, or one for each; rows are those of all of them together.
         render_size: Width and height of a picture.
         **chosen: The other settings of `EVHeatPumpEnv`.
+
+    Attributes:
+        finished: Trips that ended in the last step, each with its environment's `index`, its `end_reason`
+            (None where it was cut off), `trip`, `kpis` and `summary`; none after a reset or a restored state.
 
     Raises:
         ConfigurationError: A name, key or value is not accepted; the message says what is.
@@ -82,19 +88,27 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             "autoreset_mode": self.autoreset_mode,
         }
         trips = self._trips(scenario, distribution, settings.DEFAULT_DISTRIBUTION)
-        limit = None if max_episode_steps is None else _at_least_one("max_episode_steps", max_episode_steps)
+        unlimited = max_episode_steps is None or max_episode_steps == -1
+        limit = None if unlimited else _at_least_one("max_episode_steps", max_episode_steps)
         cores = os.cpu_count() or 1
         wanted = cores if threads is None else _at_least_one("threads", threads)
         # More than one an environment would have nothing to do, and many more than cores only wait.
         workers = min(wanted, self.num_envs, _THREADS_A_CORE * cores)
+        if threads is not None and workers < wanted:
+            _LOG.info("threads is %d, but %d are enough for %d environments", wanted, workers, self.num_envs)
         vehicles = [None if name is None else os.fspath(name) for name in self._each("vehicle", vehicle)]
         as_json = settings.to_json(**chosen)
         self._core = _core.Vector(as_json, *trips, vehicles, self.autoreset_mode.value, limit, workers)
         self._noisy = chosen.get("sensor_noise", 0.0) > 0.0
-        self._seeded = False
+        reward = chosen.get("reward")
+        self._reward: Reward | None = reward if callable(reward) else None
+        self._told = settings.told(chosen)
+        self.finished: list[_core.FinishedTrip] = []
+        self._seeded = np.zeros(self.num_envs, dtype=np.bool_)
         self._last: NDArray[np.float32] | None = None
         self._render_size = render_size
         self._renderers: list[Renderer] = []
+        settings.tell_of_narrow_rows(self._core)
         self.option_names = settings.option_names(self._core)
         self.action_names = tuple(self.option_names)
         self.single_action_space = settings.action_space(self._core)
@@ -122,22 +136,22 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         mask = self._mask(options)
         trips = self._trips(*settings.once(options, ["reset_mask"]), None)
         seeds = self._seeds(seed)
-        if not self._seeded:
+        new = mask & ~self._seeded
+        if new.any():
             fresh = self.np_random.integers(2**63, size=self.num_envs)
-            seeds = [int(fresh[i]) if given is None else given for i, given in enumerate(seeds)]
-        self._seeded = True
+            seeds = [int(fresh[i]) if new[i] and seed is None else seed for i, seed in enumerate(seeds)]
         indices = np.flatnonzero(mask).tolist()
-        told = self._core.reset(
+        self._core.reset(
             indices,
             [seeds[i] for i in indices],
             [trips[0][i] for i in indices],
             [trips[1][i] for i in indices],
         )
-        infos: dict[str, Any] = {}
-        self._tell(infos, indices, told)
-        observations = self._observations(indices)
+        self._seeded |= mask
+        observations = self._observations(mask)
         self._keep(observations)
-        return observations, infos
+        self.finished = []
+        return observations, self._infos_of_reset(mask)
 
     def step(
         self, actions: Action
@@ -148,31 +162,69 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
 
         Raises:
             ValueError: The actions have the wrong shape or hold a value that is not allowed; no environment
-                has moved then.
+                has moved then. Or the reward that was given as a function is not a finite number for each.
             TypeError: The actions are of the wrong type.
             ResetNeeded: A trip has not begun, or has ended and there is no automatic reset.
         """
         outcomes = self._core.step(actions)
-        reset = outcomes.reset
         infos: dict[str, Any] = {}
-        if len(reset) < self.num_envs:
-            stepped = np.ones((len(_PARTS), self.num_envs), dtype=np.bool_)
-            if reset:
-                stepped[:, reset] = False
-            parts = outcomes.parts
-            for row, (name, present) in enumerate(_PART_KEYS):
-                infos[name] = parts[row]
-                infos[present] = stepped[row]
-        for trip in outcomes.finished:
+        marks = np.ones((len(settings.PARTS), self.num_envs), dtype=np.bool_)
+        for name, values, mark in zip(settings.PARTS, outcomes.parts, marks, strict=True):
+            infos[name], infos[f"_{name}"] = values, mark
+        if self._told:
+            for name, values in self._extras(outcomes):
+                infos[name], infos[f"_{name}"] = values, np.ones(self.num_envs, dtype=np.bool_)
+        self.finished = outcomes.finished
+        paid = outcomes.rewards if self._reward is None else self._rewards(self._reward, outcomes)
+        for trip in self.finished:
             if trip.last_observation is not None:
-                ending = {"final_obs": trip.last_observation, "final_info": trip.info}
-            else:
-                ending = {key: value for key, value in trip.info.items() if key not in _PARTS}
-            infos = self._add_info(infos, ending, trip.index)
-        if reset:
-            self._tell(infos, reset, outcomes.trips)
+                ending = {"final_obs": trip.last_observation.copy(), "final_info": self._last_info(trip)}
+                infos = self._add_info(infos, ending, trip.index)
         self._keep(outcomes.observations)
-        return outcomes.observations, outcomes.rewards, outcomes.terminated, outcomes.truncated, infos
+        return outcomes.observations, paid, outcomes.terminated, outcomes.truncated, infos
+
+    def _extras(self, outcomes: _core.Outcomes) -> Iterator[tuple[str, NDArray[Any]]]:
+        """What infos hold beside the parts of the rewards."""
+        if "cost" in self._told and outcomes.costs is not None:
+            yield "cost", outcomes.costs
+        if "action_mask" in self._told and outcomes.masks is not None:
+            yield "action_mask", self._options(outcomes.masks.view(np.int8))
+        if "terms" in self._told and outcomes.terms is not None:
+            yield from zip(settings.TERMS, outcomes.terms, strict=True)
+
+    def _options(self, masks: NDArray[Any]) -> NDArray[Any]:
+        """Masks of the options of an action as this environment has them."""
+        return masks
+
+    def _last_info(self, trip: _core.FinishedTrip) -> dict[str, Any]:
+        """Info of the last step of a trip."""
+        info = dict(trip.info)
+        if "terms" not in self._told:
+            for name in settings.TERMS:
+                info.pop(name, None)
+        if "action_mask" in info:
+            info["action_mask"] = self._options(info["action_mask"].copy())
+        return info
+
+    def _rewards(self, reward: Reward, outcomes: _core.Outcomes) -> NDArray[np.float64]:
+        """What a function of named parts pays; nothing for the step that begins a trip."""
+        assert outcomes.terms is not None
+        parts = dict(zip(settings.PARTS, outcomes.parts.copy(), strict=True))
+        parts |= zip(settings.TERMS, outcomes.terms.copy(), strict=True)
+        # Where a trip was reset within the step, its last parts are told apart from the columns.
+        for trip in outcomes.finished:
+            for name, values in parts.items():
+                values[trip.index] = trip.info[name]
+        driven = np.ones(self.num_envs, dtype=np.bool_)
+        driven[outcomes.reset] = False
+        driven |= outcomes.terminated | outcomes.truncated
+        paid = np.zeros(self.num_envs)
+        if driven.all():
+            paid[:] = rewards.many(reward, parts, self.num_envs)
+        elif driven.any():
+            of_driven = {name: values[driven] for name, values in parts.items()}
+            paid[driven] = rewards.many(reward, of_driven, int(driven.sum()))
+        return paid
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
         """Returns a picture of each environment if `render_mode` is `rgb_array`."""
@@ -210,12 +262,35 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         """Returns what the vehicle of an environment's trip is made of."""
         return self._core.layout(index)
 
+    def decode(self, observations: NDArray[np.float32]) -> dict[str, NDArray[np.float64]]:
+        """Returns observations in the units of their rows, by name: one value an environment.
+
+        Raises:
+            ValueError: They have the wrong shape.
+        """
+        return settings.decode(self._core, observations)
+
+    def trip(self, index: int) -> dict[str, Any]:
+        """Returns what the present trip of an environment is; see `EVHeatPumpEnv.trip`."""
+        return self._core.trip(index)
+
+    def end_reason(self, index: int) -> str | None:
+        """Returns why the present trip of an environment is over; None while it is not.
+
+        Of trips that `SAME_STEP` has reset within the step `finished` tells.
+        """
+        return self._core.end_reason(index)
+
+    def clipped_shares(self, index: int) -> dict[str, float]:
+        """Returns how often each row of an environment's observations was beyond its bounds on this trip."""
+        return self._core.clipped_shares(index)
+
     def kpis(self, index: int) -> dict[str, float]:
         """Returns the KPIs of the present trip of an environment."""
         return self._core.kpis(index)
 
     def summary(self, index: int) -> dict[str, float]:
-        """Returns the totals of the present trip of an environment, those that `hp_gym.simulate` gives.
+        """Returns the totals of the present trip of an environment; see `EVHeatPumpEnv.summary`.
 
         They last until that environment is reset, which `SAME_STEP` does within the step that ends a trip.
         """
@@ -238,7 +313,9 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             message = f"states has {len(states)} entries, but must have {len(chosen)}"
             raise ValueError(message)
         self._core.set_states(chosen, list(states))
-        self._seeded = True
+        self._seeded[chosen] = True
+        self._last = None
+        self.finished = []
 
     def fork(self, indices: Sequence[int]) -> None:
         """Lets environment i go on from where environment `indices[i]` is now, for planners.
@@ -247,28 +324,45 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             ValueError: There is not one index for each environment, or one is out of range.
         """
         self._core.fork(list(indices))
+        self._seeded = self._seeded[list(indices)]
+        self._last = None
+        self.finished = []
 
-    def _observations(self, indices: list[int]) -> NDArray[np.float32]:
-        if self._last is None or not self._noisy:
-            return self._core.observe(list(range(self.num_envs)))
+    def _observations(self, mask: NDArray[np.bool_]) -> NDArray[np.float32]:
+        """Observations after a reset of the marked environments."""
+        indices = np.flatnonzero(mask).tolist()
+        others = np.flatnonzero(~mask).tolist()
+        if not others:
+            return self._core.observe(indices)
         # Noise is drawn once for each observation: those of the others stay as they were.
-        observations = self._last.copy()
+        observations = np.empty(self.observation_space.shape or (), dtype=np.float32)
+        observations[others] = (
+            self._last[others]
+            if self._noisy and self._last is not None
+            else self._core.observe(others, again=True)
+        )
         observations[indices] = self._core.observe(indices)
         return observations
 
     def _keep(self, observations: NDArray[np.float32]) -> None:
         if self._noisy:
-            self._last = observations
+            self._last = observations.copy()
 
-    def _tell(self, infos: dict[str, Any], indices: list[int], told: dict[str, Any]) -> None:
-        """Adds what is told of trips to the infos, in the form that Gymnasium gives them."""
-        for name, values in told.items():
-            if isinstance(values, np.ndarray):
-                infos[name] = np.zeros(self.num_envs, values.dtype)
-            else:
-                infos[name] = np.full(self.num_envs, None, dtype=object)
-            infos[f"_{name}"] = np.zeros(self.num_envs, np.bool_)
-            infos[name][indices], infos[f"_{name}"][indices] = values, True
+    def _infos_of_reset(self, mask: NDArray[np.bool_]) -> dict[str, Any]:
+        """Infos of a reset of the marked environments: nothing is paid yet."""
+        names = settings.PARTS
+        if "cost" in self._told:
+            names = (*names, "cost")
+        if "terms" in self._told:
+            names = (*names, *settings.TERMS)
+        infos: dict[str, Any] = {}
+        for name in names:
+            infos[name], infos[f"_{name}"] = np.zeros(self.num_envs), mask.copy()
+        if "action_mask" in self._told:
+            masks = self._options(self._core.masks().view(np.int8))
+            masks[~mask] = 0
+            infos["action_mask"], infos["_action_mask"] = masks, mask.copy()
+        return infos
 
     def _mask(self, options: dict[str, Any] | None) -> NDArray[np.bool_]:
         mask = (options or {}).get("reset_mask")
@@ -288,9 +382,10 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
     def _seeds(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
         if seed is None:
             return [None] * self.num_envs
-        if isinstance(seed, int | np.integer):
-            super().reset(seed=int(seed))
-            return [settings.core_seed(int(seed) + i) for i in range(self.num_envs)]
+        if not isinstance(seed, Sequence | np.ndarray) or getattr(seed, "ndim", 1) == 0:
+            first = settings.whole_seed(seed)
+            super().reset(seed=first)
+            return [settings.core_seed(first + i) for i in range(self.num_envs)]
         if len(seed) != self.num_envs:
             message = f"seed has {len(seed)} entries, but must have {self.num_envs}"
             raise ValueError(message)
@@ -321,7 +416,7 @@ class EVHeatPumpVectorEnv(VectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
 
     def __getstate__(self) -> dict[str, Any]:
         """What a copy needs."""
-        return {**self.__dict__, "_renderers": []}
+        return {**self.__dict__, "_renderers": [], "finished": []}
 
 
 def _at_least_one(what: str, value: object) -> int:

@@ -7,14 +7,45 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-#[allow(dead_code, reason = "the crate uses all of it")]
+// Components say in their own files what an architecture has to know of them, so they and what they need are compiled here too.
+
+#[allow(dead_code, clippy::all, reason = "the crate uses and checks all of it")]
 #[path = "src/architecture/mod.rs"]
 mod architecture;
 
-#[allow(dead_code, reason = "the crate uses all of it")]
+#[allow(dead_code, clippy::all, reason = "the crate uses and checks all of it")]
+#[path = "src/components/mod.rs"]
+mod components;
+
+#[allow(dead_code, clippy::all, reason = "the crate uses and checks all of it")]
+#[path = "src/error.rs"]
+mod error;
+
+#[allow(dead_code, clippy::all, reason = "the crate uses and checks all of it")]
+#[path = "src/config"]
+mod config {
+    pub mod bounded;
+    mod reading;
+    mod validate;
+    pub use reading::read_value;
+    pub use validate::{Celsius, Validate, Violation, ZERO_CELSIUS_K, check_range};
+}
+
+#[allow(dead_code, clippy::all, reason = "the crate uses and checks all of it")]
+#[path = "src/media"]
+mod media {
+    pub mod air;
+}
+
+#[allow(dead_code, clippy::all, reason = "the crate uses and checks all of it")]
 #[path = "src/numerics"]
 mod numerics {
+    pub mod dual;
+    pub mod elementary;
+    pub mod elimination;
     pub mod graph;
+    pub mod interpolation;
+    pub mod thermal_network;
 }
 
 /// Shapes of all architectures in a folder, and what finds that of a layout.
@@ -129,7 +160,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         Folder { constant: "ARCHITECTURES", folder: "architectures", ending: "toml" },
         Folder { constant: "REFRIGERANTS", folder: "refrigerants", ending: "csv" },
     ])?;
-    println!("cargo:rerun-if-changed=src/architecture");
+    for used in ["architecture", "components", "config", "error.rs", "media", "numerics"] {
+        println!("cargo:rerun-if-changed=src/{used}");
+    }
     println!("cargo:rerun-if-changed=build.rs");
     let folder = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?).join("../../configs/architectures");
     let code = shapes(&folder)?;

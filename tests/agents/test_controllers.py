@@ -5,8 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import hp_gym
 from hp_gym.agents.controllers import ControllerError, resolve
 from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
+from hp_gym.studies.benchmark.kpis import energies_kwh
 
 MINE = """
 import numpy as np
@@ -59,6 +61,30 @@ def test_off_takes_least_air_and_coolant_and_no_heat() -> None:
     assert now["htc_flow_kg_s"] < 0.1
     rules = driven("hpcu").signals(0)
     assert now["blower_power_w"] < 0.2 * rules["blower_power_w"]
+
+
+@pytest.mark.parametrize("vehicle", hp_gym.names("vehicle"))
+def test_controllers_that_look_at_nothing_drive_any_car(vehicle: str) -> None:
+    (off,) = resolve("off")
+    env = EVHeatPumpVectorEnv(1, scenario="ours/commute-minus5", vehicle=vehicle, **off.environment)
+    observations, _ = env.reset(seed=0)
+    act = off.begin(env)
+    for _ in range(60):
+        env.step(act(observations))
+    energies = energies_kwh(env.summary(0), env.layout(0))
+    assert energies["compressor_energy_kwh"] == energies["ptc_energy_kwh"] == 0.0
+    assert energies["blower_energy_kwh"] > 0.0
+    assert (energies["pump_energy_kwh"] > 0.0) == bool(env.layout(0)["loops"])
+    connections = [member["connection"] for member in env.layout(0)["members"] if member["connection"]]
+    now = env.signals(0)
+    assert all(now[connection] == 0.0 for connection in connections)
+    (random,) = resolve("random")
+    env = EVHeatPumpVectorEnv(1, scenario="ours/commute-minus5", vehicle=vehicle, **random.environment)
+    observations, _ = env.reset(seed=0)
+    act = random.begin(env)
+    for _ in range(60):
+        observations, *_ = env.step(act(observations))
+    assert np.isfinite(observations).all()
 
 
 def test_ptc_only_heats_the_cabin_and_nothing_else() -> None:

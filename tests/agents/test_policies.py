@@ -223,6 +223,23 @@ def test_foreign_files_are_refused(tmp_path: Path) -> None:
         policies.load(tmp_path / "absent.safetensors")
 
 
+def test_a_policy_sees_rows_within_the_bounds_that_it_was_trained_with(file: Path) -> None:
+    policy = policies.load(file)
+    own = policy.metadata.environment
+    assert own.observation_bounds is not None
+    assert own.observation_bounds["compressor_power_w"] == (0.0, 8000.0)
+    older = own.model_copy(update={"observation_bounds": None})
+    assert older.keywords()["observation_bounds"]["compressor_power_w"] == (0.0, 5000.0)
+    envs = EVHeatPumpVectorEnv(1, scenario="jeffs2019/case1-1", **older.keywords())
+    envs.reset(seed=0)
+    for _ in range(60):
+        observations = envs.step(envs.rule_based_actions())[0]
+    place = own.observations.index("compressor_power_w")
+    power_w = envs.signals(0)["compressor_power_w"]
+    assert power_w > 100.0
+    assert observations[0, place] == pytest.approx(power_w / 2500.0 - 1.0, abs=1e-6)
+
+
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
@@ -237,6 +254,7 @@ def test_foreign_files_are_refused(tmp_path: Path) -> None:
             "unknown observation `mood`",
         ),
         (lambda told: told["environment"]["observations"].append("time_left_s"), "layers.0.weight"),
+        (lambda told: told["environment"]["observation_bounds"].pop("soc"), "`observations` differ in `soc`"),
         (lambda told: told["option_counts"].__setitem__(0, 4), "in this version of hp_gym"),
         (lambda told: told.update(output="clip"), "`output` clip does not fit"),
         (lambda told: told["network"].update(hidden_sizes=[64]), r"layers\.1\.bias` is float32\[64\]"),

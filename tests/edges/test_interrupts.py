@@ -18,25 +18,17 @@ from safetensors.numpy import load_file
 from typer.testing import CliRunner, Result
 
 import hp_gym
-from hp_gym import native
+from hp_gym import _core
 from hp_gym.agents.training import configuration, train
 from hp_gym.agents.training.watch import Watch
 from hp_gym.cli.app import app
 from hp_gym.studies.tuning import ambient_bands, search, tuned_rules
 from hp_gym.studies.tuning.objective import Objective
 
-SMALL = """
-algorithm = "ppo"
-total_decisions = 1024
-checkpoint_interval_decisions = 100_000
-torch_threads = 1
-environments = { number = 8, threads = 1 }
-environment = { control_interval_s = 60 }
-learning_rate = { start = 1e-2 }
-network = { hidden_sizes = [8, 8] }
-validation = { interval_decisions = 512, trips = 2 }
-hyperparameters = { n_steps = 32, batch_size = 128, n_epochs = 2, gamma = 0.9 }
-"""
+sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
+from kill_results import training
+
+SMALL = training(total=1024, checkpoint_interval=100_000, validation_interval=512)
 SAC = [
     "algorithm=sac",
     "environment.continuous=true",
@@ -89,13 +81,21 @@ def test_ctrl_c_in_the_first_native_call_of_a_process_is_a_keyboard_interrupt(wh
     assert done.stdout == "interrupted\n", done.stderr
 
 
-def test_a_long_run_is_the_same_in_one_native_call_and_in_many(monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = hp_gym.simulate(CASE, substeps=3)
-    monkeypatch.setattr(native, "_SUBSTEPS_AT_ONCE", 0)
-    parts = hp_gym.simulate(CASE, substeps=3)
-    np.testing.assert_array_equal(whole.values, parts.values)
-    assert whole.summary == parts.summary
-    assert whole.end_reason == parts.end_reason
+def test_a_long_run_asks_now_and_then_whether_to_go_on() -> None:
+    experiment = hp_gym.Experiment(CASE, substeps=100)
+    asked: list[None] = []
+    values, _, end_reason = experiment.simulate(lambda: asked.append(None))
+    alone, _, _ = experiment.simulate()
+    np.testing.assert_array_equal(values, alone)
+    assert end_reason == "arrived"
+    assert len(asked) == (len(values) - 1 - 1) // 100
+
+    def give_up() -> None:
+        message = "enough"
+        raise InterruptedError(message)
+
+    with pytest.raises(InterruptedError, match="enough"):
+        experiment.simulate(give_up)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="sends a signal")
@@ -103,18 +103,18 @@ def test_totals_of_3000_trips_can_be_stopped_within_a_second() -> None:
     threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
     began_s = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
-        native.totals([CASE] * 3000)
+        _core.totals([CASE] * 3000)
     assert time.monotonic() - began_s < 1.5
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork")
 def test_totals_after_a_fork_do_not_hang() -> None:
     code = (
-        "import os, sys; from hp_gym import native\n"
-        f"before = native.totals(['{CASE}'] * 2)\n"
+        "import os, sys; from hp_gym import _core\n"
+        f"before = _core.totals(['{CASE}'] * 2)\n"
         "child = os.fork()\n"
         "if child == 0:\n"
-        f"    os._exit(0 if native.totals(['{CASE}'] * 2) == before else 1)\n"
+        f"    os._exit(0 if _core.totals(['{CASE}'] * 2) == before else 1)\n"
         "sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False, timeout=30).returncode == 0

@@ -113,6 +113,7 @@ def sealed(tmp_path_factory: pytest.TempPathFactory) -> bytes:
         pytest.param("x = " + "{a = " * 10_000, id="10,000 tables"),
         pytest.param("a" + ".a" * 10_000 + " = 1", id="10,000 dots"),
         pytest.param("[a" + ".a" * 10_000 + "]", id="10,000 sections"),
+        pytest.param("a" + ".a" * 400_000 + " = 1", id="400,000 dots, once minutes"),
         pytest.param("x = " + "9" * 5_000, id="5,000 digits"),
         pytest.param('x = "' + "long " * 1_000_000 + '"', id="5 MB"),
         pytest.param("base = 3", id="base is a number"),

@@ -27,14 +27,17 @@ def test_a_training_trip_strands_only_by_what_a_controller_does() -> None:
 def test_test_trips_are_those_of_the_first_version() -> None:
     """No value of `test-v0` has changed since, and so no trip may have."""
     env = EVHeatPumpEnv(distribution="test-v0")
-    infos = [env.reset(seed=0)[1], env.reset(seed=1)[1], env.reset()[1]]
-    assert [(info["cycle"], info["trip_s"]) for info in infos] == [
+    trips = []
+    for seed in (0, 1, None):
+        env.reset(seed=seed)
+        trips.append(env.trip())
+    assert [(trip["cycle"], trip["duration_s"]) for trip in trips] == [
         ("hwfet", 765),
         ("artemis-motorway-130", 1067),
         ("artemis-road", 1081),
     ]
     expected_degc = [21.746029306863818, -11.62150422856667, 30.111902423079023]
-    np.testing.assert_array_equal([info["ambient_temperature_degc"] for info in infos], expected_degc)
+    np.testing.assert_array_equal([trip["ambient_temperature_degc"] for trip in trips], expected_degc)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from functools import partial
 from typing import Any
 
 import gymnasium as gym
@@ -15,7 +16,7 @@ from stable_baselines3.common.env_checker import check_env as check_env_of_sb3
 import hp_gym
 from hp_gym import _core
 from hp_gym.envs.hpcu_policy import HpcuPolicy
-from hp_gym.envs.wrappers import MODES, FlatActions
+from hp_gym.envs.modes import MODES
 
 MODES_OF_ACTION = [
     {},
@@ -31,6 +32,12 @@ HTC, CHILLER = 1, 2
 
 def make(**kwargs: Any) -> gym.Env[Any, Any]:
     return gym.make("EVHeatPump-v0", disable_env_checker=True, **kwargs)
+
+
+def kpis(env: gym.Env[Any, Any]) -> dict[str, float]:
+    inner: Any = env.unwrapped
+    told: dict[str, float] = inner.kpis()
+    return told
 
 
 def drive(
@@ -62,10 +69,13 @@ def test_stable_baselines3_finds_nothing_to_complain_about(kwargs: dict[str, Any
 def test_hpcu_through_the_environment_drives_what_simulate_drives(scenario: str) -> None:
     expected = hp_gym.simulate(scenario)
     env = make(scenario=scenario, continuous=True, actions=HpcuPolicy.ACTIONS)
-    rows, _, info = drive(env, HpcuPolicy(env))
+    rows, _, _ = drive(env, HpcuPolicy(env))
     np.testing.assert_array_equal(rows, expected.values)
-    assert info["end_reason"] == expected.end_reason
-    np.testing.assert_equal(env.unwrapped.summary(), dict(expected.summary))  # type: ignore[attr-defined]
+    inner: Any = env.unwrapped
+    assert inner.end_reason() == expected.end_reason
+    summary = inner.summary()
+    assert summary.pop("clipped_share") == 0.0
+    np.testing.assert_equal(summary, dict(expected.summary))
 
 
 @pytest.mark.parametrize("scenario", [*PAPER, "ours/hot-soak-plus35"])
@@ -81,16 +91,16 @@ def test_hpcu_on_levels_needs_within_5_percent_of_its_energy(scenario: str) -> N
 def test_rewards_add_up_to_the_score(reward: str) -> None:
     env = make(scenario="ours/commute-minus5", reward=reward)
     _, rewards, info = drive(env, HpcuPolicy(env))
-    assert sum(rewards) == pytest.approx(info["kpis"]["score"], rel=1e-9)
+    assert sum(rewards) == pytest.approx(kpis(env)["score"], rel=1e-9)
     assert info["reward_heat_left"] == 0.0 or reward == "stored-heat"
 
 
 def test_kpis_agree_with_the_totals_of_simulate() -> None:
     env = make(scenario="jeffs2019/case1-1", continuous=True, actions="hpcu")
-    _, _, info = drive(env, HpcuPolicy(env))
+    drive(env, HpcuPolicy(env))
     summary = hp_gym.simulate("jeffs2019/case1-1").summary
-    assert info["kpis"]["chemical_energy_kwh"] == pytest.approx(summary["battery_chemical_energy_kwh"])
-    assert info["kpis"]["discomfort_k"] == pytest.approx(summary["discomfort_k"])
+    assert kpis(env)["chemical_energy_kwh"] == pytest.approx(summary["battery_chemical_energy_kwh"])
+    assert kpis(env)["discomfort_k"] == pytest.approx(summary["discomfort_k"])
 
 
 def test_reference_energy_depends_on_the_scenario_alone() -> None:
@@ -99,8 +109,8 @@ def test_reference_energy_depends_on_the_scenario_alone() -> None:
         env = make(scenario="jeffs2019/case1-1")
         env.action_space.seed(5)
         choose = HpcuPolicy(env) if policy == "hpcu" else lambda _, env=env: env.action_space.sample()
-        _, _, info = drive(env, choose)
-        references.append(info["kpis"]["reference_energy_kwh"])
+        drive(env, choose)
+        references.append(kpis(env)["reference_energy_kwh"])
     assert references[0] == references[1]
 
 
@@ -199,25 +209,34 @@ def test_an_action_is_held_for_the_control_interval() -> None:
 
 def test_reset_options_choose_a_trip_once() -> None:
     env = make()
-    _, info = env.reset(seed=2, options={"scenario": "jeffs2019/case2-1"})
-    assert info["scenario"] == "jeffs2019/case2-1"
-    _, info = env.reset(options={"distribution": "test-v0"})
-    assert info["cycle"] in {"hwfet", "artemis-road", "artemis-motorway-130"}
-    _, info = env.reset()
-    assert info["cycle"] not in {"hwfet", "artemis-road", "artemis-motorway-130"}
+    inner: Any = env.unwrapped
+    env.reset(seed=2, options={"scenario": "jeffs2019/case2-1"})
+    assert inner.trip()["scenario"] == "jeffs2019/case2-1"
+    env.reset(options={"distribution": "test-v0"})
+    assert inner.trip()["cycle"] in {"hwfet", "artemis-road", "artemis-motorway-130"}
+    env.reset()
+    assert inner.trip()["cycle"] not in {"hwfet", "artemis-road", "artemis-motorway-130"}
 
 
 def test_the_same_seed_draws_the_same_trips_and_another_does_not() -> None:
-    env = make()
-    trips = []
+    env: Any = make().unwrapped
+    trips: list[list[dict[str, Any]]] = []
     for seed in (8, 8, 9):
         env.reset(seed=seed)
-        trips.append([env.reset()[1]["ambient_temperature_degc"] for _ in range(3)])
+        trips.append([])
+        for _ in range(3):
+            env.reset()
+            trips[-1].append(env.trip())
     assert trips[0] == trips[1] != trips[2]
 
 
 def test_without_a_seed_two_environments_drive_different_trips() -> None:
-    assert make().reset()[1] != make().reset()[1]
+    trips = []
+    for _ in range(2):
+        env: Any = make().unwrapped
+        env.reset()
+        trips.append(env.trip())
+    assert trips[0] != trips[1]
 
 
 def test_an_empty_battery_ends_the_trip_at_a_price() -> None:
@@ -225,13 +244,13 @@ def test_an_empty_battery_ends_the_trip_at_a_price() -> None:
     env.reset(seed=0)
     action = np.array([0, 0, 0, 0, 0, 1, 1, 0])
     while True:
-        _, reward, terminated, truncated, info = env.step(action)
+        _, reward, terminated, truncated, _ = env.step(action)
         if terminated:
             break
-    assert info["end_reason"] in {"battery_empty", "unserved_energy"}
+    inner: Any = env.unwrapped
+    assert inner.end_reason() in {"battery_empty", "unserved_energy"}
     assert not truncated
     assert float(reward) < -400.0
-    assert "kpis" in info
 
 
 def test_returned_arrays_are_the_callers() -> None:
@@ -245,22 +264,31 @@ def test_returned_arrays_are_the_callers() -> None:
 
 
 def test_flat_actions_are_modes_of_the_same_environment() -> None:
-    env = FlatActions(make(scenario="jeffs2019/case1-1"))
+    flat = partial(gym.make, "EVHeatPumpFlat-v0", disable_env_checker=True)
+    env: Any = flat(scenario="jeffs2019/case1-1").unwrapped
     assert isinstance(env.action_space, gym.spaces.Discrete)
-    check_env_of_sb3(env)
     env.reset(seed=0)
     assert env.action_masks().shape == (len(MODES),)
     assert env.action_masks()[0]
-    for mode in range(len(MODES)):
-        env.step(np.int64(mode))
+    plain: Any = make(scenario="jeffs2019/case1-1").unwrapped
+    plain.reset(seed=0)
+    for mode, options in enumerate(MODES):
+        named = plain.option_names
+        action = [
+            named[name].index(options[name]) if isinstance(options.get(name), str) else options.get(name, 0)
+            for name in named
+        ]
+        np.testing.assert_array_equal(env.step(np.int64(mode))[0], plain.step(np.array(action))[0])
     with pytest.raises(ValueError, match="from 0 to"):
         env.step(np.int64(len(MODES)))
     with pytest.raises(hp_gym.ConfigurationError, match="unknown action `heater`"):
-        FlatActions(make(), [{"heater": 1}])
+        flat(modes=[{}, {"heater": 1}])
     with pytest.raises(hp_gym.ConfigurationError, match=r"`cabin` is 'hot'.*isolated, htc, chiller"):
-        FlatActions(make(), [{"cabin": "hot"}])
-    with pytest.raises(hp_gym.ConfigurationError, match="must be MultiDiscrete"):
-        FlatActions(make(continuous=True))
+        flat(modes=[{}, {"cabin": "hot"}])
+    with pytest.raises(hp_gym.ConfigurationError, match="at least two modes"):
+        flat(modes=[{}])
+    with pytest.raises(hp_gym.ConfigurationError, match="continuous is True"):
+        flat(continuous=True)
 
 
 def test_pictures_are_drawn_in_the_size_asked_for() -> None:

@@ -59,6 +59,7 @@ def test_the_page_has_the_sections_of_gymnasium() -> None:
         "Action Space",
         "Observation Space",
         "Rewards",
+        "Info",
         "Starting State",
         "Episode End",
         "Arguments",

@@ -54,8 +54,9 @@ def test_a_distribution_file_of_ones_own_is_read_and_checked(tmp_path: Path) -> 
     text = hp_gym._core.config_text("distribution of episodes", "train-v1")
     path = tmp_path / "mine.toml"
     path.write_text(text.replace("ambient_low_degc = -20.0", "ambient_low_degc = 39.0"))
-    _, info = EVHeatPumpEnv(distribution=path).reset(seed=0)
-    assert info["ambient_temperature_degc"] >= 39.0
+    env = EVHeatPumpEnv(distribution=path)
+    env.reset(seed=0)
+    assert env.trip()["ambient_temperature_degc"] >= 39.0
     path.write_text(text.replace("ambient_low_degc = -20.0", "ambient_low_degc = 45.0"))
     with pytest.raises(
         hp_gym.ConfigurationError, match=r"ambient_low_degc` is 45, but must be between -inf and 40"
@@ -84,12 +85,12 @@ VALUES = [
     (
         np.full(8, np.nan, dtype=np.float32),
         ValueError,
-        r"action\[0\] \(battery\) is NaN, but must be between -1 and 1",
+        r"action\[0\] \(battery\) is NaN, but must be a finite number",
     ),
     (
-        np.array([0, 0, 0, 0, 0, 0, 0, 1.01], dtype=np.float32),
+        np.array([0, 0, 0, 0, 0, 0, 0, np.inf], dtype=np.float32),
         ValueError,
-        r"action\[7\] \(compressor_power\) is 1.0",
+        r"action\[7\] \(compressor_power\) is inf",
     ),
 ]
 

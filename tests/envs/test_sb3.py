@@ -10,6 +10,7 @@ from stable_baselines3 import PPO, SAC
 from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.vec_env import DummyVecEnv
 
+from hp_gym import _core
 from hp_gym.envs.env import EVHeatPumpEnv
 from hp_gym.envs.hpcu_policy import HpcuPolicy
 from hp_gym.envs.sb3 import SB3VecEnv
@@ -62,7 +63,8 @@ def test_the_adapter_returns_what_a_dummy_vec_env_returns() -> None:
                 np.testing.assert_array_equal(
                     info["terminal_observation"], other_info["terminal_observation"]
                 )
-                assert info.get("kpis") == other_info.get("kpis")
+                parts = _core.reward_parts()
+                assert [info[part] for part in parts] == [other_info[part] for part in parts]
     assert cut_off == {True, False}
 
 

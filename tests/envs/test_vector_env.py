@@ -99,11 +99,13 @@ def test_each_environment_may_have_its_own_scenario() -> None:
     scenarios = ["jeffs2019/case1-1", None, "ours/hot-soak-plus35"]
     distributions = [None, "test-v0", None]
     envs = EVHeatPumpVectorEnv(3, scenario=scenarios, distribution=distributions)
-    _, infos = envs.reset(seed=0)
-    assert infos["scenario"].tolist() == ["jeffs2019/case1-1", "ours/commute-minus5", "ours/hot-soak-plus35"]
-    _, infos = envs.reset(options={"scenario": ["jeffs2019/case2-1", None, None]})
-    assert infos["scenario"][0] == "jeffs2019/case2-1"
-    assert envs.reset()[1]["scenario"][0] == "jeffs2019/case1-1"
+    envs.reset(seed=0)
+    driven = [envs.trip(index)["scenario"] for index in range(3)]
+    assert driven == ["jeffs2019/case1-1", "ours/commute-minus5", "ours/hot-soak-plus35"]
+    envs.reset(options={"scenario": ["jeffs2019/case2-1", None, None]})
+    assert envs.trip(0)["scenario"] == "jeffs2019/case2-1"
+    envs.reset()
+    assert envs.trip(0)["scenario"] == "jeffs2019/case1-1"
 
 
 @pytest.mark.parametrize("continuous", [False, True])

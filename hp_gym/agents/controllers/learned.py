@@ -23,22 +23,35 @@ ABLATION: Final = "ablation/"
 """How names of ablation policies begin."""
 
 
-def from_file(path: str | os.PathLike[str], name: str | None = None) -> Controller:
+def from_file(
+    path: str | os.PathLike[str], name: str | None = None, *, allow_code: bool = False
+) -> Controller:
     """A policy file as a controller, deterministic.
 
     Args:
         path: The file.
         name: Name in tables; by default that of the file, without folder and training seed: policies that
             were trained with several seeds (`mine-seed0.safetensors`, ...) are runs of one controller.
+        allow_code: Whether a zip file of stable-baselines3 is loaded, which can run code. It is taken as
+            trained on `EVHeatPump-v0` or `EVHeatPumpContinuous-v0` with their defaults.
 
     Raises:
-        ControllerError: It is no policy or does not fit; loading never runs code.
+        ControllerError: It is no policy or does not fit; loading never runs code unless it is allowed.
     """
+    zipped = allow_code and Path(path).suffix.lower() == ".zip"
     try:
-        policy = load(path)
+        policy = _zip_file(path) if zipped else load(path)
     except (PolicyError, OSError) as error:
         raise ControllerError(str(error)) from error
-    return _controller(policy, _without_seed(Path(path).stem) if name is None else name)
+    # What stable-baselines3 saves as ppo.zip is not the shipped `ppo`.
+    of_file = _without_seed(Path(path).stem) + (".zip" if zipped else "")
+    return _controller(policy, of_file if name is None else name)
+
+
+def _zip_file(path: str | os.PathLike[str]) -> SavedPolicy:
+    from hp_gym.agents.policies.sb3_zip import load_sb3_zip
+
+    return load_sb3_zip(path, None, allow_code=True)[0]
 
 
 def _without_seed(stem: str) -> str:

@@ -2,36 +2,33 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hp_gym.agents.controllers.controller import Act, Controller
-from hp_gym.command import ACTUATORS
 
 if TYPE_CHECKING:
     from hp_gym.envs.settings import Action
     from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
 
-# Besides connections, PTC and compressor, what an agent leaves running by default: air and coolant.
-_OFF_ACTIONS: Final = (*ACTUATORS[:8], "recirculation", "blower_level", "htc_flow", "chiller_flow")
-
 
 def off() -> Controller:
     """Everything isolated and off; ambient air at the blower's lowest level, coolant at the lowest flows.
 
-    It is what the reference trip of the attributable energy is, but with the temperatures that come of it.
+    It is what the reference trip of the attributable energy is, but with the temperatures that come of it. It
+    moves every actuator, whatever the car has.
     """
 
     def begin(env: EVHeatPumpVectorEnv) -> Act:
-        lowest = np.zeros((env.num_envs, len(_OFF_ACTIONS)), dtype=np.int64)
+        lowest = np.zeros((env.num_envs, len(env.action_names)), dtype=np.int64)
         return lambda _: lowest
 
-    return Controller("off", begin, {"actions": _OFF_ACTIONS})
+    return Controller("off", begin, {"actions": "all"})
 
 
 def random(seed: int) -> Controller:
-    """The eight default actions, each second all options equally likely."""
+    """The default actions of the car, each second all options equally likely."""
 
     def begin(env: EVHeatPumpVectorEnv) -> Act:
         generator = np.random.default_rng(seed)

@@ -19,14 +19,17 @@ RULES_SUFFIX: Final = ".toml"
 POLICY_SUFFIXES: Final = (".safetensors", ".onnx", ".zip")
 
 
-def resolve(name: str, *, seed: int = 0, seeds: Collection[int] | None = None) -> list[Controller]:
+def resolve(
+    name: str, *, seed: int = 0, seeds: Collection[int] | None = None, allow_code: bool = False
+) -> list[Controller]:
     """Finds a controller.
 
     Args:
-        name: One of `DEFAULTS`, the path of a policy (.safetensors, .onnx) or of a controller file (.toml),
-            or `module:Class`.
+        name: One of `DEFAULTS`, the path of a policy (.safetensors, .onnx; .zip if allowed) or of a
+            controller file (.toml), or `module:Class`.
         seed: Seed of the controller `random`.
         seeds: Training seeds of the reference policies to take; all by default.
+        allow_code: Whether zip files of stable-baselines3 are loaded, which can run code.
 
     Returns:
         One controller; for the reference policies one for each training seed.
@@ -48,7 +51,9 @@ def resolve(name: str, *, seed: int = 0, seeds: Collection[int] | None = None) -
     if path.suffix in {*POLICY_SUFFIXES, RULES_SUFFIX}:
         if not path.is_file():
             raise ControllerError(f"controller `{name}`: there is no such file")
-        return [rule_based.rules(path.stem, path) if path.suffix == RULES_SUFFIX else learned.from_file(name)]
+        if path.suffix == RULES_SUFFIX:
+            return [rule_based.rules(path.stem, path)]
+        return [learned.from_file(name, allow_code=allow_code)]
     if ":" in name:
         return [python_class.load(name)]
     message = (

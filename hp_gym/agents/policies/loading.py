@@ -25,7 +25,8 @@ def load(path: str | os.PathLike[str]) -> SavedPolicy:
         case ".zip":
             message = (
                 f"{os.fspath(path)}: loading a zip file of stable-baselines3 can run code that was put "
-                "there; if you trust it, convert it with `hp-gym export --allow-code`"
+                "there; if you trust it, give `--allow-code` to `hp-gym benchmark`, or to `hp-gym export`, "
+                "which converts it"
             )
             raise PolicyError(message)
     message = f"{os.fspath(path)}: a policy file ends with .safetensors or .onnx"

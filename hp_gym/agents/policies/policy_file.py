@@ -151,6 +151,11 @@ def assemble(name: str, text: str, tensors: Tensors, found: str | None) -> Saved
         message = f"{name}: metadata: `masked`, but continuous actions have no masks"
         raise PolicyError(message)
     _check_tensors(name, metadata, tensors)
+    bounds = metadata.environment.observation_bounds
+    if bounds is not None and set(bounds) != set(metadata.environment.observations):
+        apart = sorted(set(bounds) ^ set(metadata.environment.observations))
+        message = f"{name}: metadata: `observation_bounds` and `observations` differ in `{apart[0]}`"
+        raise PolicyError(message)
     layers = tuple(
         (tensors[f"layers.{i}.weight"], tensors[f"layers.{i}.bias"])
         for i in range(len(metadata.network.hidden_sizes) + 1)

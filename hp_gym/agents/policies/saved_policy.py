@@ -1,5 +1,6 @@
 """A trained multilayer perceptron: what it was trained for and what it decides."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Final, Literal, TypeAlias, Unpack
 
@@ -22,6 +23,33 @@ FORMAT_VERSION: Final = 2
 MASKED_LOGIT: Final = np.float32(-1e8)
 """What sb3-contrib puts in place of the output of an option that is masked."""
 
+FIRST_TABLE: Final[Mapping[str, tuple[float, float]]] = {
+    "time_s": (0.0, 3600.0),
+    "speed_m_s": (0.0, 40.0),
+    "traction_power_w": (-100_000.0, 100_000.0),
+    "evaporating_pressure_bar": (0.0, 10.0),
+    "discharge_temperature_degc": (-40.0, 140.0),
+    "battery_power_w": (-100_000.0, 100_000.0),
+    "compressor_power_w": (0.0, 5000.0),
+    "ptc_power_w": (0.0, 6000.0),
+    "auxiliary_power_w": (0.0, 1500.0),
+    "condenser_heat_flow_w": (0.0, 15_000.0),
+    "evaporator_heat_flow_w": (0.0, 15_000.0),
+    "ambient_htc_heat_flow_w": (-15_000.0, 15_000.0),
+    "ambient_chiller_heat_flow_w": (-15_000.0, 15_000.0),
+    "cabin_condenser_heat_flow_w": (0.0, 15_000.0),
+    "cabin_evaporator_heat_flow_w": (0.0, 15_000.0),
+    "front_condenser_heat_flow_w": (0.0, 15_000.0),
+    "front_evaporator_heat_flow_w": (0.0, 15_000.0),
+    "htc_condenser_heat_flow_w": (0.0, 15_000.0),
+    "ambient_radiator_loop_heat_flow_w": (-15_000.0, 15_000.0),
+    "radiator_battery_loop_heat_flow_w": (-15_000.0, 15_000.0),
+    "radiator_low_temperature_heat_flow_w": (-15_000.0, 15_000.0),
+    **{f"speed_in_{seconds}_s": (0.0, 40.0) for seconds in (2, 5, 10, 20, 40, 80)},
+    "time_left_s": (0.0, 3600.0),
+}
+"""Bounds that rows had before policies said theirs, where they are others now (docs/versions.md)."""
+
 _FROZEN: Final = ConfigDict(frozen=True, extra="forbid", strict=True)
 
 
@@ -42,13 +70,16 @@ class PolicyEnvironment(BaseModel):
     action_options: dict[str, tuple[str, ...]] | None = None
     """Options of each action, none for levels; None where rows and options are the default architecture's."""
 
+    observation_bounds: dict[str, tuple[float, float]] | None = None
+    """Lowest and highest value of each row; None in older files, which mean those of `FIRST_TABLE`."""
+
     @classmethod
     def resolve(cls, **chosen: Unpack[Keywords]) -> "PolicyEnvironment":
         """Returns the settings with every set and group spelled out.
 
         Args:
-            **chosen: `vehicle`, `continuous`, `actions`, `action_options`, `observations` and
-                `control_interval_s` of the environment.
+            **chosen: `vehicle`, `continuous`, `actions`, `action_options`, `observations`,
+                `observation_bounds` and `control_interval_s` of the environment.
 
         Raises:
             ConfigurationError: A name or value is not accepted.
@@ -59,6 +90,7 @@ class PolicyEnvironment(BaseModel):
             continuous=chosen.get("continuous", False),
             actions=tuple(options),
             observations=tuple(row[0] for row in episode.observation_rows()),
+            observation_bounds={row[0]: (row[2], row[3]) for row in episode.observation_rows()},
             control_interval_s=chosen.get("control_interval_s", 1),
         )
         if environment.is_of_default_rows() and environment.options() == options:
@@ -95,10 +127,14 @@ class PolicyEnvironment(BaseModel):
     def keywords(self) -> dict[str, Any]:
         """Returns them as keyword arguments of an environment."""
         choices = {name: list(options) for name, options in self.options().items() if options}
+        bounds = self.observation_bounds
+        if bounds is None:
+            bounds = {name: FIRST_TABLE[name] for name in self.observations if name in FIRST_TABLE}
         return self.model_dump() | {
             "actions": list(self.actions),
             "observations": list(self.observations),
             "action_options": choices,
+            "observation_bounds": dict(bounds),
         }
 
 

@@ -8,6 +8,8 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any, Final
 
+from gymnasium import spaces
+
 from hp_gym import extras
 from hp_gym.agents.policies.errors import PolicyError
 from hp_gym.agents.policies.from_sb3 import from_sb3
@@ -41,7 +43,7 @@ _NOT_NEEDED: Final = {"learning_rate": 0.0, "lr_schedule": None}
 
 def load_sb3_zip(
     path: str | os.PathLike[str],
-    environment: PolicyEnvironment,
+    environment: PolicyEnvironment | None,
     *,
     allow_code: bool,
     normalisation: str | os.PathLike[str] | None = None,
@@ -50,7 +52,8 @@ def load_sb3_zip(
 
     Args:
         path: The zip file.
-        environment: What it was trained on; the file does not say.
+        environment: What it was trained on; the file does not say. None for an id with its defaults, which of
+            them its actions tell.
         allow_code: Must be true: the file is trusted.
         normalisation: Pickled `VecNormalize` of its training, if any; trusted like the file.
 
@@ -71,6 +74,8 @@ def load_sb3_zip(
         message = f"{name}: cannot be loaded ({type(error).__name__}: {error})"
         raise PolicyError(message) from error
     try:
+        if environment is None:
+            environment = PolicyEnvironment.resolve(continuous=isinstance(model.action_space, spaces.Box))
         return from_sb3(model, environment, normalisation=wrapper, seed=model.seed), model
     except PolicyError as error:
         message = f"{name}: {error}"

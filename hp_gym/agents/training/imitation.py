@@ -123,7 +123,7 @@ def demonstrate(
         factors = scaling.factors(seen)
         seen, reward, terminated, _, infos = envs.step(np.where(disturbed, envs.action_space.sample(), taken))
         # Of a trip's last decision the part is not told here; what it weighs does not matter to a warm start.
-        rewards.append(environments.scaled(reward, infos.get(DISCOMFORT, np.zeros(number)), factors))
+        rewards.append(environments.scaled(reward, infos[DISCOMFORT], factors))
         ends.append(terminated)
     envs.close()
     returns, known = _returns(np.array(rewards), np.array(ends), training.hyperparameters.gamma)

@@ -106,15 +106,13 @@ def drive(envs: EVHeatPumpVectorEnv, seeds: Sequence[int], decide: Decide, *, ma
     under_way = np.ones(len(ends), dtype=np.bool_)
     while under_way.any():
         masks = envs.action_masks() if masked else None
-        observations, _, terminated, _, infos = envs.step(decide(observations, masks))
+        observations, _, terminated, _, _ = envs.step(decide(observations, masks))
         # Environments whose trip has ended begin another one, which is not counted.
-        for index in np.flatnonzero(terminated & under_way).tolist():
-            arrived = float(infos["end_reason"][index] == "arrived")
-            ends[index] = {
-                **envs.kpis(index),
-                "arrived": arrived,
-                "duration_s": envs.summary(index)["duration_s"],
-            }
+        for trip in envs.finished:
+            if under_way[trip.index]:
+                arrived = float(trip.end_reason == "arrived")
+                duration_s = trip.summary["duration_s"]
+                ends[trip.index] = {**trip.kpis, "arrived": arrived, "duration_s": duration_s}
         under_way &= ~terminated
     envs.close()
     values = {name: np.array([end[name] for end in ends]) for name in _OF_THE_END}

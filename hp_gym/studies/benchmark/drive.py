@@ -119,14 +119,12 @@ def _drive_group(
         while left:
             if over is not None and over.is_set():
                 raise CancelledError
-            observations, _, terminated, _, infos = env.step(act(observations))
-            if not terminated.any():
-                continue
-            for index in np.flatnonzero(terminated).tolist():
+            observations, _, _, _, _ = env.step(act(observations))
+            for trip in env.finished:
                 # A stranded trip ends early; its environment drives on from the start, unseen.
-                if not rows[index]:
-                    rows[index] = measure(
-                        controller, scenarios[index], env, index, infos["end_reason"][index]
+                if not rows[trip.index]:
+                    rows[trip.index] = measure(
+                        controller, scenarios[trip.index], trip, env.layout(trip.index)
                     )
                     left -= 1
                     progress(1)

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any, Final
 from hp_gym.studies.benchmark.results import IDENTITY, KPIS
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hp_gym import _core
     from hp_gym.agents.controllers import Controller
-    from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
     from hp_gym.studies.benchmark.grid import Scenario
 
 ARRIVED: Final = "arrived"
@@ -18,9 +20,6 @@ _TOTALS: Final = (
     "duration_s",
     "distance_km",
     "energy_kwh",
-    "compressor_energy_kwh",
-    "ptc_energy_kwh",
-    "blower_energy_kwh",
     "fan_energy_kwh",
     "final_soc_pct",
     "time_to_comfort_s",
@@ -39,18 +38,17 @@ _REWARD_TERMS: Final = (
 
 
 def measure(
-    controller: Controller, scenario: Scenario, env: EVHeatPumpVectorEnv, index: int, end_reason: str
+    controller: Controller, scenario: Scenario, trip: _core.FinishedTrip, layout: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Returns the KPIs of a trip that has just ended.
+    """Returns the KPIs of a trip that has ended.
 
     Args:
         controller: Who drove.
         scenario: What was driven.
-        env: Where.
-        index: Place of the trip in it.
-        end_reason: Why it ended.
+        trip: How it went.
+        layout: What its vehicle is made of.
     """
-    terms, totals = env.kpis(index), env.summary(index)
+    terms, totals = trip.kpis, trip.summary
     distance_km = totals["distance_km"]
     charge_used_pct = scenario.variant.state_of_charge_pct - totals["final_charge_soc_pct"]
     values = {name: terms[name] for name in _REWARD_TERMS} | {name: totals[name] for name in _TOTALS}
@@ -58,11 +56,11 @@ def measure(
         "attributable_energy_kwh_per_100_km": _quotient(
             100.0 * terms["attributable_energy_kwh"], distance_km
         ),
-        "pump_energy_kwh": totals["htc_pump_energy_kwh"] + totals["chiller_pump_energy_kwh"],
+        **energies_kwh(totals, layout),
         # A full battery at this trip's consumption of charge.
         "range_km": _quotient(100.0 * distance_km, charge_used_pct),
         "comfortable_share_pct": 100.0 * totals["comfortable_share"],
-        "stranded": 0.0 if end_reason == ARRIVED else 1.0,
+        "stranded": 0.0 if trip.end_reason == ARRIVED else 1.0,
     }
     identity = {
         "controller": controller.name,
@@ -72,9 +70,30 @@ def measure(
         "cycle": scenario.cycle.name,
         "ambient_temperature_degc": scenario.ambient_temperature_degc,
         "band": scenario.band.name,
-        "end_reason": end_reason,
+        "end_reason": trip.end_reason,
     }
     return {name: identity[name] for name in IDENTITY} | {name: values[name] for name in KPIS}
+
+
+def energies_kwh(totals: Mapping[str, float], layout: Mapping[str, Any]) -> dict[str, float]:
+    """Returns the energy of machines that a car may have one, several or none of, added up by kind [kWh].
+
+    The PTC stands for all heaters, the blower for those of all cabins.
+
+    Args:
+        totals: Totals of a trip.
+        layout: What the car is made of.
+    """
+    powers = {
+        "compressor_energy_kwh": ["compressor_power_w"] if layout["refrigerates"] else [],
+        "ptc_energy_kwh": [heater["power"] for heater in layout["heaters"]],
+        "blower_energy_kwh": [cabin["blower_power"] for cabin in layout["cabins"]],
+        "pump_energy_kwh": [loop["pump_power"] for loop in layout["loops"]],
+    }
+    return {
+        kpi: sum((totals[f"{column.removesuffix('_power_w')}_energy_kwh"] for column in columns), 0.0)
+        for kpi, columns in powers.items()
+    }
 
 
 def _quotient(value: float, divisor: float) -> float:

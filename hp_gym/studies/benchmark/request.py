@@ -34,6 +34,8 @@ class Request:
     seeds: Sequence[int] | None
     seed: int
     out: Path
+    allow_code: bool = False
+    """Whether zip files of stable-baselines3 are loaded, which can run code."""
 
     def words(self) -> str:
         """The command, without the folder of results: that does not change them."""
@@ -44,6 +46,8 @@ class Request:
             parts.append(f"--seeds {','.join(map(str, self.seeds))}")
         if self.seed:
             parts.append(f"--seed {self.seed}")
+        if self.allow_code:
+            parts.append("--allow-code")
         return " ".join(parts)
 
 
@@ -123,7 +127,7 @@ def controllers(request: Request, console: Console) -> list[Controller]:
     chosen = [
         controller
         for name in benchmark_plan.needed_rules(dict.fromkeys(names), rules)
-        for controller in resolve(name, seed=request.seed, seeds=request.seeds)
+        for controller in resolve(name, seed=request.seed, seeds=request.seeds, allow_code=request.allow_code)
     ]
     return chosen + (learned.ablations() if learned.REFERENCE in names else [])
 

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from hp_gym import native
+from hp_gym import _core
 from hp_gym.studies.calibration.calibration_file import Parameter
 from hp_gym.studies.calibration.problem import CalibrationError, Problem
 from hp_gym.studies.reproduction.claims import CLAIMS, by_label
@@ -67,7 +67,7 @@ class Residuals:
 
     def totals(self, values: Sequence[float]) -> dict[str, Totals]:
         """Totals of every scenario."""
-        results = native.totals(self._scenarios, overrides(self.problem.parameters, values))
+        results = _core.totals(self._scenarios, overrides(self.problem.parameters, values))
         return {
             scenario: Totals(summary["energy_kwh"], summary["final_soc_pct"], end == "arrived")
             for scenario, (summary, end) in zip(self._scenarios, results, strict=True)

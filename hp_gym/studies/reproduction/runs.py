@@ -3,11 +3,10 @@
 import os
 import threading
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from time import perf_counter
 from typing import TypeAlias
 
-from hp_gym import native
 from hp_gym._core import Experiment
 from hp_gym.trajectory import Trajectory
 
@@ -30,9 +29,14 @@ def simulate_all(
     """
     experiments = [Experiment(scenario, None, overrides, substeps) for scenario in scenarios]
     over = threading.Event()
+
+    def check() -> None:
+        if over.is_set():
+            raise CancelledError
+
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         start_s = perf_counter()
-        futures = [pool.submit(native.simulate, experiment, substeps, over) for experiment in experiments]
+        futures = [pool.submit(experiment.simulate, check) for experiment in experiments]
         try:
             results = [future.result() for future in futures]
         except BaseException:

@@ -21,11 +21,11 @@ pub enum Checked<'py> {
 pub fn read<'py>(action: &Bound<'py, PyAny>, setup: &Setup, count: Option<usize>) -> PyResult<Checked<'py>> {
     if setup.continuous {
         let array = typed::<f32>(action, "f", "float32", "floating point")?;
-        let allowed = |_: usize, value: f32| (-1.0..=1.0).contains(&value);
-        let values = checked(&array, setup, count, allowed, |row, value| {
-            (f64::from(value), format!("between -1 and 1 ({})", row.description))
-        });
-        values.map(|()| Checked::Values(array))
+        let allowed = |_: usize, value: f32| value.is_finite();
+        checked(&array, setup, count, allowed, |row, value| {
+            (f64::from(value), format!("a finite number, held between -1 and 1 ({})", row.description))
+        })?;
+        held(array).map(Checked::Values)
     } else {
         let array = typed::<i64>(action, "iu", "int64", "integer")?;
         let options = setup.actions.option_counts();
@@ -40,6 +40,17 @@ pub fn read<'py>(action: &Bound<'py, PyAny>, setup: &Setup, count: Option<usize>
         });
         levels.map(|()| Checked::Levels(array))
     }
+}
+
+/// Values held in [-1, 1], as agents expect whose Gaussian actions know no bounds.
+fn held(array: PyReadonlyArrayDyn<'_, f32>) -> PyResult<PyReadonlyArrayDyn<'_, f32>> {
+    let within = array.as_slice()?.iter().fold(true, |within, value| within & (value.abs() <= 1.0));
+    if within {
+        return Ok(array);
+    }
+    let py = array.py();
+    let clipped = array.call_method1(intern!(py, "clip"), (-1.0, 1.0))?;
+    Ok(clipped.cast_into::<PyArrayDyn<f32>>()?.readonly())
 }
 
 /// The action as a contiguous array of one type; other types of the same kind are converted.

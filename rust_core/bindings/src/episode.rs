@@ -2,18 +2,22 @@
 
 use crate::actions::{self, Checked};
 use crate::errors::{ConfigurationError, gymnasium_error, to_python};
+use crate::scalars::float64;
 use crate::vehicles::{ActuatorTuple, DEFAULT_ARCHITECTURE, SignalNames, action_tuple, layout_dict};
 use hp_episode::action::{ActionTable, GROUPS};
-use hp_episode::episode::{self, Clock};
+use hp_episode::episode::{self, Clock, Facts, Outcome};
+use hp_episode::guard::{Guarded, caught, done};
 use hp_episode::observation::Observed;
-use hp_episode::reward::{PART_NAMES, Parts, RewardParameters, Terms};
+use hp_episode::reward::{PART_NAMES, Parts, RewardParameters, TERM_NAMES, Terms};
 use hp_episode::rows::RowSet;
-use hp_episode::setup::{Origin, Settings, Setup, Source};
+use hp_episode::setup::{Origin, Settings, Setup, Source, Told};
+use hp_plant::command::ACTUATOR_PLACES;
 use hp_plant::config::vehicle::architecture;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBytes, PyDict, PyString, PyTuple};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -25,7 +29,7 @@ pub fn setup(settings: &str, origins: &[Origin]) -> PyResult<(Arc<Setup>, Vec<So
         let key = error.path().to_string();
         ConfigurationError::new_err(format!("setting `{key}`: {}", error.into_inner()))
     })?;
-    Setup::new(&settings, origins).map_err(to_python)
+    caught(|| Setup::new(&settings, origins)).map_err(to_python)
 }
 
 /// Source of trips of one reset; none where it names no scenario and no distribution.
@@ -33,7 +37,7 @@ pub fn once(setup: &Setup, origin: Origin) -> PyResult<Option<Source>> {
     if origin.scenario.is_none() && origin.distribution.is_none() {
         return Ok(None);
     }
-    setup.source(&origin).map(Some).map_err(to_python)
+    caught(|| setup.source(&origin)).map(Some).map_err(to_python)
 }
 
 /// Present values of all signals.
@@ -50,27 +54,60 @@ pub fn speeds_m_s(episode: &episode::Episode) -> Vec<f64> {
     episode.trip().map_or_else(Vec::new, |(_, experiment)| experiment.cycle.speeds_m_s().to_vec())
 }
 
-/// What is told of a trip when it begins.
-pub fn trip_info<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<Bound<'py, PyDict>> {
+/// What a trip is, by name.
+pub fn facts_dict<'py>(py: Python<'py>, facts: Option<&Facts>) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    if let Some(facts) = facts {
+        dict.set_item(intern!(py, "scenario"), &*facts.scenario)?;
+        dict.set_item(intern!(py, "vehicle"), &facts.vehicle)?;
+        dict.set_item(intern!(py, "cycle"), &facts.cycle)?;
+        dict.set_item(intern!(py, "window_s"), facts.window_s)?;
+        dict.set_item(intern!(py, "duration_s"), facts.duration_s)?;
+        dict.set_item(intern!(py, "ambient_temperature_degc"), facts.ambient_temperature_degc)?;
+    }
+    Ok(dict)
+}
+
+/// Names of the parts of a reward, made once: strings that nobody keeps would be interned and forgotten at each step.
+fn part_names(py: Python<'_>) -> &'static [Py<PyString>] {
+    static NAMES: PyOnceLock<Vec<Py<PyString>>> = PyOnceLock::new();
+    NAMES.get_or_init(py, || PART_NAMES.iter().map(|name| PyString::intern(py, name).unbind()).collect())
+}
+
+/// What is told of a step: the parts of its reward, and what else is wanted. Nothing was paid where a trip has just begun.
+pub fn step_info<'py>(
+    py: Python<'py>,
+    told: &[Told],
+    (parts, terms): (&Parts, &Terms),
+    mask: impl FnOnce() -> Vec<bool>,
+) -> PyResult<Bound<'py, PyDict>> {
     let info = PyDict::new(py);
-    if let Some((origin, experiment)) = episode.trip() {
-        info.set_item(intern!(py, "scenario"), origin)?;
-        info.set_item(intern!(py, "vehicle"), &experiment.scenario.vehicle)?;
-        info.set_item(intern!(py, "cycle"), experiment.cycle.name())?;
-        info.set_item(intern!(py, "trip_s"), experiment.cycle.duration_s())?;
-        let ambient_degc = experiment.climate.ambient_temperature_degc.0;
-        info.set_item(intern!(py, "ambient_temperature_degc"), ambient_degc)?;
+    for (name, &part) in part_names(py).iter().zip(parts) {
+        info.set_item(name, float64(py, part)?)?;
+    }
+    if told.is_empty() {
+        return Ok(info);
+    }
+    if told.contains(&Told::Cost) {
+        info.set_item(intern!(py, "cost"), float64(py, terms.cost())?)?;
+    }
+    if told.contains(&Told::Terms) {
+        for (name, value) in TERM_NAMES.iter().zip(terms.values()) {
+            info.set_item(PyString::intern(py, name), float64(py, value)?)?;
+        }
+    }
+    if told.contains(&Told::ActionMask) {
+        let mask: Vec<i8> = mask().into_iter().map(i8::from).collect();
+        info.set_item(intern!(py, "action_mask"), mask.into_pyarray(py))?;
     }
     Ok(info)
 }
 
-/// Parts of a reward by name.
-pub fn parts_info<'py>(py: Python<'py>, parts: &Parts) -> PyResult<Bound<'py, PyDict>> {
-    let info = PyDict::new(py);
-    for (name, part) in PART_NAMES.iter().zip(parts) {
-        info.set_item(PyString::intern(py, name), part)?;
-    }
-    Ok(info)
+/// Options that the plant would grant in the coming second.
+pub fn mask_of(episode: &episode::Episode) -> Vec<bool> {
+    let mut mask = vec![true; episode.setup().actions.mask_length()];
+    episode.write_mask(&mut mask);
+    mask
 }
 
 /// KPIs of a trip by name.
@@ -82,15 +119,20 @@ pub fn kpis<'py>(py: Python<'py>, terms: &Terms, weights: &RewardParameters) -> 
     Ok(dict)
 }
 
-/// Totals of a trip by name.
-pub fn summary<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<Bound<'py, PyDict>> {
+/// Numbers by name; NaN where a quantity does not exist.
+pub fn by_name<'py>(py: Python<'py>, values: Vec<(String, Option<f64>)>) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    if let (Some(run), Some((_, experiment))) = (episode.run(), episode.trip()) {
-        for (name, value) in run.summary.values(experiment.plant.layout()) {
-            dict.set_item(name, value)?;
-        }
+    for (name, value) in values {
+        dict.set_item(name, value.unwrap_or(f64::NAN))?;
     }
     Ok(dict)
+}
+
+/// Share of the observations of the trip in which each row was clipped, by name.
+pub fn clipped_shares<'py>(py: Python<'py>, episode: &episode::Episode) -> PyResult<Bound<'py, PyDict>> {
+    let rows = episode.setup().observations.rows().iter();
+    let shares = rows.zip(episode.clipped_shares());
+    by_name(py, shares.map(|(row, share)| (row.name.clone(), Some(share))).collect())
 }
 
 /// What a step gives: observation, reward, terminated, truncated, info.
@@ -104,22 +146,37 @@ pub fn observed_row(row: &Observed) -> ObservedRow {
     (row.name.clone(), row.unit, row.low, row.high, row.description.clone())
 }
 
+/// Vehicle, row, its upper bound, and what the vehicle can reach.
+pub type NarrowRow = (String, String, f64, f64);
+
+/// Rows whose bounds a vehicle can leave.
+pub fn narrow_rows(setup: &Setup) -> Vec<NarrowRow> {
+    let rows = setup.narrow.iter();
+    rows.map(|row| (row.vehicle.clone(), row.row.clone(), row.high, row.limit)).collect()
+}
+
 /// One environment.
 #[pyclass(module = "hp_gym._core")]
 pub struct Episode {
     settings: String,
     scenario: Option<String>,
     distribution: Option<String>,
-    inner: episode::Episode,
+    inner: Guarded<episode::Episode>,
     observation: Vec<f32>,
     names: SignalNames,
     closed: bool,
 }
 
 impl Episode {
-    fn observed<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
-        self.inner.observe(&mut self.observation);
-        PyArray1::from_slice(py, &self.observation)
+    fn observed<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let observation = &mut self.observation;
+        self.inner.alter(|episode| episode.observe(observation)).map_err(to_python)?;
+        Ok(PyArray1::from_slice(py, &self.observation))
+    }
+
+    fn info<'py>(&self, py: Python<'py>, outcome: Option<&Outcome>) -> PyResult<Bound<'py, PyDict>> {
+        let (parts, terms) = outcome.map_or_else(Default::default, |outcome| (outcome.parts, outcome.terms));
+        step_info(py, &self.inner.setup().told, (&parts, &terms), || mask_of(&self.inner))
     }
 
     fn require_open(&self, py: Python<'_>) -> PyResult<()> {
@@ -135,6 +192,7 @@ impl Episode {
 
     fn require_begun(&self, py: Python<'_>) -> PyResult<()> {
         self.require_open(py)?;
+        self.inner.require_sound().map_err(to_python)?;
         if !self.inner.begun() {
             return Err(gymnasium_error(py, "ResetNeeded", "call reset() first"));
         }
@@ -152,7 +210,7 @@ impl Episode {
         let (setup, mut sources) = setup(&settings, &[origin])?;
         let source = sources.remove(0);
         let observation = vec![0.0; setup.observations.rows().len()];
-        let inner = episode::Episode::new(setup, source);
+        let inner = Guarded::new(episode::Episode::new(setup, source));
         Ok(Self {
             settings,
             scenario,
@@ -182,21 +240,24 @@ impl Episode {
         self.inner.setup().observations.rows().iter().map(observed_row).collect()
     }
 
-    fn seed(&mut self, seed: u64) {
-        self.inner.seed(seed);
+    /// Rows whose bounds the vehicle can leave: vehicle, row, upper bound, limit of the vehicle.
+    fn narrow_rows(&self) -> Vec<NarrowRow> {
+        narrow_rows(self.inner.setup())
     }
 
-    #[pyo3(signature = (scenario=None, distribution=None))]
+    #[pyo3(signature = (scenario=None, distribution=None, seed=None))]
     fn reset<'py>(
         &mut self,
         py: Python<'py>,
         scenario: Option<String>,
         distribution: Option<String>,
+        seed: Option<u64>,
     ) -> PyResult<(Bound<'py, PyArray1<f32>>, Bound<'py, PyDict>)> {
         self.require_open(py)?;
         let once = once(self.inner.setup(), Origin { scenario, distribution, ..Origin::default() })?;
-        self.inner.reset(once.as_ref()).map_err(to_python)?;
-        Ok((self.observed(py), trip_info(py, &self.inner)?))
+        self.inner.begin(|episode| episode.restart(seed, once.as_ref())).map_err(to_python)?;
+        let observation = self.observed(py)?;
+        Ok((observation, self.info(py, None)?))
     }
 
     fn step<'py>(&mut self, py: Python<'py>, action: &Bound<'py, PyAny>) -> PyResult<Step<'py>> {
@@ -207,29 +268,35 @@ impl Episode {
         }
         let setup = self.inner.setup();
         let outcome = match actions::read(action, setup, None)? {
-            Checked::Values(array) => self.inner.step(array.as_slice()?),
+            Checked::Values(array) => {
+                let values = array.as_slice()?;
+                self.inner.alter(|episode| episode.step(values))
+            }
             Checked::Levels(array) => {
-                let levels = array.as_slice()?.iter().enumerate();
-                let values: Vec<f32> =
-                    levels.map(|(column, &level)| setup.actions.value(column, level as usize)).collect();
-                self.inner.step(&values)
+                let levels = array.as_slice()?;
+                let (mut few, mut many) = ([0.0; ACTUATOR_PLACES], Vec::new());
+                // Cars that share an environment can have more rows together than one has.
+                let values = few.get_mut(..levels.len()).unwrap_or_else(|| {
+                    many.resize(levels.len(), 0.0);
+                    &mut many
+                });
+                for (column, (value, &level)) in values.iter_mut().zip(levels).enumerate() {
+                    *value = setup.actions.value(column, level as usize);
+                }
+                self.inner.alter(|episode| episode.step(values))
             }
         };
+        let outcome = outcome.map_err(to_python)?;
         let Some(outcome) = outcome else {
             return Err(gymnasium_error(py, "ResetNeeded", "call reset() first"));
         };
-        let info = parts_info(py, &outcome.parts)?;
-        if let Some(end) = outcome.end {
-            info.set_item(intern!(py, "end_reason"), end.name())?;
-            info.set_item(intern!(py, "kpis"), self.kpis(py)?)?;
-        }
-        Ok((self.observed(py), outcome.reward, outcome.end.is_some(), false, info))
+        let observation = self.observed(py)?;
+        Ok((observation, outcome.reward, outcome.end.is_some(), false, self.info(py, Some(&outcome))?))
     }
 
     fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
         self.require_begun(py)?;
-        let mut mask = vec![true; self.inner.setup().actions.mask_length()];
-        self.inner.write_mask(&mut mask);
+        let mask = done(|| mask_of(&self.inner)).map_err(to_python)?;
         Ok(mask.into_pyarray(py))
     }
 
@@ -238,11 +305,11 @@ impl Episode {
         let width = self.inner.setup().actions.rows().len();
         if self.inner.setup().continuous {
             let mut values = vec![0.0; width];
-            self.inner.rule_based_values(&mut values);
+            self.inner.alter(|episode| episode.rule_based_values(&mut values)).map_err(to_python)?;
             Ok(values.into_pyarray(py).into_any())
         } else {
             let mut levels = vec![0; width];
-            self.inner.rule_based_levels(&mut levels);
+            self.inner.alter(|episode| episode.rule_based_levels(&mut levels)).map_err(to_python)?;
             Ok(levels.into_pyarray(py).into_any())
         }
     }
@@ -286,17 +353,35 @@ impl Episode {
     /// Totals of the trip so far, as `simulate` gives them.
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.require_begun(py)?;
-        summary(py, &self.inner)
+        by_name(py, self.inner.totals())
+    }
+
+    /// What the trip is.
+    fn trip<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.require_begun(py)?;
+        facts_dict(py, self.inner.facts().as_ref())
+    }
+
+    /// Why the trip is over; none while it is not.
+    fn end_reason(&self, py: Python<'_>) -> PyResult<Option<&'static str>> {
+        self.require_begun(py)?;
+        Ok(self.inner.end().map(|end| end.name()))
+    }
+
+    /// Share of the observations of the trip in which each row was clipped, by name.
+    fn clipped_shares<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.require_begun(py)?;
+        clipped_shares(py, &self.inner)
     }
 
     fn get_state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        self.inner.require_sound().map_err(to_python)?;
         Ok(PyBytes::new(py, &self.inner.to_bytes(Clock::default()).map_err(to_python)?))
     }
 
     fn set_state(&mut self, py: Python<'_>, state: &[u8]) -> PyResult<()> {
         self.require_open(py)?;
-        self.inner.resume(self.inner.read(state).map_err(to_python)?);
-        Ok(())
+        self.inner.begin(|episode| episode.restore(state)).map_err(to_python)
     }
 
     fn close(&mut self) {
@@ -320,7 +405,7 @@ impl Episode {
     }
 
     fn __setstate__(&mut self, state: (Vec<u8>, bool)) -> PyResult<()> {
-        self.inner.resume(self.inner.read(&state.0).map_err(to_python)?);
+        self.inner.begin(|episode| episode.restore(&state.0)).map_err(to_python)?;
         self.closed = state.1;
         Ok(())
     }
@@ -363,4 +448,10 @@ pub fn observation_table() -> PyResult<Vec<(ObservedRow, bool)>> {
 #[pyfunction]
 pub fn reward_parts() -> Vec<&'static str> {
     PART_NAMES.to_vec()
+}
+
+/// Names of the terms that rewards are counted from.
+#[pyfunction]
+pub fn reward_terms() -> Vec<&'static str> {
+    TERM_NAMES.to_vec()
 }

@@ -2,29 +2,42 @@
 
 use hp_plant::error::PlantError;
 use pyo3::create_exception;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 create_exception!(
-    _core,
+    hp_gym,
     ConfigurationError,
     PyValueError,
     "A file, name or value that the plant does not accept."
 );
 
 create_exception!(
-    _core,
+    hp_gym,
     StateError,
     ConfigurationError,
     "A saved state that is damaged, or of something else."
 );
 
+create_exception!(
+    hp_gym,
+    InternalError,
+    PyRuntimeError,
+    "A mistake of this package; what was worked on is refused until it is reset or restored."
+);
+
 /// Python exception for an error of the plant.
 pub fn to_python(error: PlantError) -> PyErr {
     match error {
-        PlantError::State { .. } => StateError::new_err(error.to_string()),
-        _ => ConfigurationError::new_err(error.to_string()),
+        PlantError::Internal { .. } => InternalError::new_err(error.in_one_line()),
+        PlantError::State { .. } => StateError::new_err(error.in_one_line()),
+        _ => ConfigurationError::new_err(error.in_one_line()),
     }
+}
+
+/// What Python's own handlers say of the signals that came.
+pub fn signals() -> PyResult<()> {
+    Python::attach(|py| py.check_signals())
 }
 
 /// An exception of `gymnasium.error` by name.

@@ -1,7 +1,8 @@
 //! Scenarios and runs.
 
-use crate::errors::to_python;
+use crate::errors::{signals, to_python};
 use crate::vehicles::{ActuatorTuple, SignalTuple, actuator_tuple, layout_dict, signal_tuple};
+use hp_episode::guard::{Guarded, caught, done};
 use hp_episode::timing;
 use hp_plant::architecture::layout::Layout;
 use hp_plant::command::Command;
@@ -11,7 +12,6 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Totals of a run and why it ended.
@@ -24,14 +24,16 @@ fn parse_overrides(overrides: &[String]) -> PyResult<Vec<Override>> {
     overrides.iter().map(|text| Override::parse(text).map_err(to_python)).collect()
 }
 
-fn to_dict<'py>(
+/// Totals by name; NaN where a quantity does not exist.
+pub fn to_dict<'py>(
     py: Python<'py>,
     summary: &summary::Summary,
     layout: &Layout,
 ) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for (name, value) in summary.values(layout) {
-        dict.set_item(name, value)?;
+        // Sums and quotients of such values are none either, which Python's `None` could not say.
+        dict.set_item(name, value.unwrap_or(f64::NAN))?;
     }
     Ok(dict)
 }
@@ -57,8 +59,9 @@ impl Experiment {
         vehicle: Option<&str>,
     ) -> PyResult<Self> {
         let overrides = parse_overrides(&overrides)?;
-        let mut inner = experiment::Experiment::with_vehicle(scenario, vehicle, controller, &overrides)
-            .map_err(to_python)?;
+        let loaded =
+            caught(|| experiment::Experiment::with_vehicle(scenario, vehicle, controller, &overrides));
+        let mut inner = loaded.map_err(to_python)?;
         if !(1..=1000).contains(&substeps) {
             return Err(PyValueError::new_err(format!(
                 "substeps is {substeps}, but must be between 1 and 1000"
@@ -172,21 +175,29 @@ impl Experiment {
         Ok(command.0[..ranges.count()].to_vec().into_pyarray(py))
     }
 
-    fn simulate<'py>(&self, py: Python<'py>) -> PyResult<Trajectory<'py>> {
-        let trajectory = py.detach(|| self.inner.simulate());
+    /// Drives to the end with the rule-based controller; `check` is called every now and then, and what it raises ends it.
+    #[pyo3(signature = (check=None))]
+    fn simulate<'py>(&self, py: Python<'py>, check: Option<Py<PyAny>>) -> PyResult<Trajectory<'py>> {
+        let go_on = || {
+            signals()?;
+            check.as_ref().map_or(Ok(()), |check| Python::attach(|py| check.call0(py).map(drop)))
+        };
+        let driven = py.detach(|| done(|| self.inner.simulate_while(go_on)));
+        let trajectory = driven.map_err(to_python)??;
         let rows = trajectory.values.len() / trajectory.columns;
         let values = trajectory.values.into_pyarray(py).reshape([rows, trajectory.columns])?;
         Ok((values, to_dict(py, &trajectory.summary, self.inner.plant.layout())?, trajectory.end.name()))
     }
 
     fn totals<'py>(&self, py: Python<'py>) -> PyResult<Totals<'py>> {
-        let (summary, end) = py.detach(|| self.inner.totals());
+        let driven = py.detach(|| done(|| self.inner.totals_while(signals)));
+        let (summary, end) = driven.map_err(to_python)??;
         Ok((to_dict(py, &summary, self.inner.plant.layout())?, end.name()))
     }
 
-    fn start(slf: Py<Self>, py: Python<'_>) -> Run {
-        let run = slf.borrow(py).inner.start();
-        Run { experiment: slf, inner: run, ended: None }
+    fn start(slf: Py<Self>, py: Python<'_>) -> PyResult<Run> {
+        let run = done(|| slf.borrow(py).inner.start()).map_err(to_python)?;
+        Ok(Run { experiment: slf, inner: Guarded::new(run), ended: None })
     }
 }
 
@@ -201,7 +212,7 @@ enum Setting {
 #[pyclass(module = "hp_gym._core")]
 pub struct Run {
     experiment: Py<Experiment>,
-    inner: run::Run,
+    inner: Guarded<run::Run>,
     ended: Option<&'static str>,
 }
 
@@ -212,10 +223,10 @@ impl Run {
         self.experiment.clone_ref(py)
     }
 
-    fn rule_based_command<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+    fn rule_based_command<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let experiment = &self.experiment.borrow(py).inner;
-        let command = experiment.rule_based_command(&mut self.inner);
-        command.0[..experiment.plant.ranges.count()].to_vec().into_pyarray(py)
+        let command = self.inner.alter(|run| experiment.rule_based_command(run)).map_err(to_python)?;
+        Ok(command.0[..experiment.plant.ranges.count()].to_vec().into_pyarray(py))
     }
 
     fn step(&mut self, py: Python<'_>, command: PyReadonlyArray1<'_, f32>) -> PyResult<Option<&'static str>> {
@@ -237,17 +248,20 @@ impl Run {
         }
         let mut command = Command::default();
         command.0[..values.len()].copy_from_slice(values);
-        self.ended = experiment.inner.step(&mut self.inner, &command).map(run::EndReason::name);
+        let stepped = self.inner.alter(|run| experiment.inner.step(run, &command));
+        self.ended = stepped.map_err(to_python)?.map(run::EndReason::name);
         Ok(self.ended)
     }
 
-    fn look<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+    fn look<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        self.inner.require_sound().map_err(to_python)?;
         let mut row = Vec::new();
         self.experiment.borrow(py).inner.look(&self.inner, &mut row);
-        row.into_pyarray(py)
+        Ok(row.into_pyarray(py))
     }
 
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.inner.require_sound().map_err(to_python)?;
         to_dict(py, &self.inner.summary, self.experiment.borrow(py).inner.plant.layout())
     }
 }
@@ -262,18 +276,13 @@ pub fn totals<'py>(
     vehicle: Option<String>,
 ) -> PyResult<Vec<Totals<'py>>> {
     let overrides = parse_overrides(&overrides)?;
-    let results: Vec<_> = py.detach(|| {
-        let run = |name: &String| {
-            let experiment =
-                experiment::Experiment::with_vehicle(name, vehicle.as_deref(), None, &overrides)?;
-            Ok((experiment.totals(), experiment.plant))
-        };
-        scenarios.par_iter().map(run).collect()
-    });
+    let driven = py
+        .detach(|| done(|| hp_episode::totals::totals(&scenarios, vehicle.as_deref(), &overrides, signals)));
+    let results = driven.map_err(to_python)??;
     results
         .into_iter()
         .map(|result| {
-            let ((summary, end), plant) = result.map_err(to_python)?;
+            let (summary, end, plant) = result.map_err(to_python)?;
             Ok((to_dict(py, &summary, plant.layout())?, end.name()))
         })
         .collect()
@@ -288,8 +297,12 @@ pub fn plant_step_seconds(
     seed: Option<u64>,
     vehicle: Option<&str>,
 ) -> PyResult<(f64, usize)> {
-    let experiment = experiment::Experiment::with_vehicle(scenario, vehicle, None, &[]).map_err(to_python)?;
-    let timed = py.detach(|| timing::compressor_on_steps(&experiment, seed));
+    let timed = py.detach(|| {
+        caught(|| {
+            let experiment = experiment::Experiment::with_vehicle(scenario, vehicle, None, &[])?;
+            timing::compressor_on_steps(&experiment, seed)
+        })
+    });
     let (spent, steps) = timed.map_err(to_python)?;
     Ok((spent.as_secs_f64(), steps))
 }

@@ -2,8 +2,9 @@
 
 use crate::errors::to_python;
 use hp_episode::episode::Episode;
+use hp_episode::guard::caught;
 use hp_episode::rows::{ActionRow, branch_name};
-use hp_plant::architecture::declaration::{Level, MemberKind, Side};
+use hp_plant::architecture::declaration::{Level, Side};
 use hp_plant::architecture::layout::{
     BranchLayout, BranchSide, CabinLayout, ExchangerLayout, ExchangerSide, HeaterLayout, HeaterTarget,
     Layout, LoopLayout, MemberLayout,
@@ -76,7 +77,7 @@ impl SignalNames {
 #[pyfunction]
 #[pyo3(signature = (name=DEFAULT_ARCHITECTURE))]
 pub fn actuators(name: &str) -> PyResult<Vec<ActuatorTuple>> {
-    let layout = architecture(name).map_err(to_python)?;
+    let layout = caught(|| architecture(name)).map_err(to_python)?;
     Ok(layout.actuators.iter().map(actuator_tuple).collect())
 }
 
@@ -84,14 +85,14 @@ pub fn actuators(name: &str) -> PyResult<Vec<ActuatorTuple>> {
 #[pyfunction(name = "signals")]
 #[pyo3(signature = (name=DEFAULT_ARCHITECTURE))]
 pub fn signal_table(name: &str) -> PyResult<Vec<SignalTuple>> {
-    let layout = architecture(name).map_err(to_python)?;
+    let layout = caught(|| architecture(name)).map_err(to_python)?;
     Ok(SignalTable::of(&layout).rows().iter().map(signal_tuple).collect())
 }
 
 /// Reads and checks an architecture by name or path; returns what it is made of.
 #[pyfunction]
 pub fn architecture_layout<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-    to_dict(py, &described(&architecture(name).map_err(to_python)?, name))
+    to_dict(py, &described(&caught(|| architecture(name)).map_err(to_python)?, name))
 }
 
 /// Reads and checks a vehicle by name or path; returns what it is made of.
@@ -104,7 +105,7 @@ pub fn vehicle_layout<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let overrides: Vec<Override> =
         overrides.iter().map(|text| Override::parse(text)).collect::<Result<_, _>>().map_err(to_python)?;
-    layout_dict(py, Some(&VehicleParameters::load(name, &overrides).map_err(to_python)?))
+    layout_dict(py, Some(&caught(|| VehicleParameters::load(name, &overrides)).map_err(to_python)?))
 }
 
 /// What a vehicle is made of, as a dict; empty without one.
@@ -207,7 +208,7 @@ impl Named<'_> {
         json!({
             "name": member.name,
             "label": member.label,
-            "kind": kind_word(member.kind),
+            "kind": member.kind.data().word,
             "temperature": member.node.map(|node| self.temperature(node)),
             "options": options.unwrap_or_default(),
             "connection": member.connection_row.map(|_| format!("{}_connection", member.name)),
@@ -289,17 +290,5 @@ fn crossing_word(crossing: Crossing) -> &'static str {
         Crossing::Enters => "enters",
         Crossing::Leaves => "leaves",
         Crossing::Inside => "inside",
-    }
-}
-
-fn kind_word(kind: MemberKind) -> &'static str {
-    match kind {
-        MemberKind::Battery => "battery",
-        MemberKind::Motor => "motor",
-        MemberKind::Transmission => "transmission",
-        MemberKind::FrontEnd => "front-end",
-        MemberKind::Store => "store",
-        MemberKind::Cabin => "cabin",
-        MemberKind::Plate => "plate",
     }
 }

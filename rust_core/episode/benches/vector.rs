@@ -5,7 +5,7 @@ use hp_episode::episode::Episode;
 use hp_episode::random::Random;
 use hp_episode::reference::{ReferenceConditions, ReferenceTrip};
 use hp_episode::setup::{Origin, Settings, Setup, Source};
-use hp_episode::vector::{Actions, Autoreset, PARTS, Results, Vector};
+use hp_episode::vector::{Actions, Autoreset, Extras, PARTS, Results, Vector};
 use std::hint::black_box;
 use std::sync::Arc;
 
@@ -57,7 +57,8 @@ impl Driven {
         let (rewards, parts) = self.numbers.split_at_mut(count);
         let (terminated, truncated) = self.flags.split_at_mut(count);
         let observations = &mut self.observations;
-        let mut results = Results { observations, rewards, terminated, truncated, parts };
+        let mut results =
+            Results { observations, rewards, terminated, truncated, parts, extras: Extras::default() };
         let levels = &self.levels[self.step % self.levels.len()];
         self.step += 1;
         black_box(self.vector.step(Actions::Levels(levels), &mut results).expect("built in"));

@@ -3,12 +3,12 @@
 //! `cargo build --release -p hp_episode --example steps`, then
 //! `valgrind --tool=callgrind target/release/examples/steps 64 200 1` (environments, steps, threads).
 //!
-//! A fourth number repeats the same trips; vehicles may follow. Every call's shortest time of all rounds is what it takes undisturbed.
+//! A fourth number repeats the same trips; vehicles may follow, and at the end `--info` for costs and action masks. Every call's shortest time of all rounds is what it takes undisturbed.
 
 use hp_episode::episode::Episode;
 use hp_episode::random::Random;
 use hp_episode::setup::{Origin, Settings, Setup};
-use hp_episode::vector::{Actions, Autoreset, PARTS, Results, Vector};
+use hp_episode::vector::{Actions, Autoreset, Extras, PARTS, Results, Vector};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -18,7 +18,8 @@ fn main() {
     };
     let (count, steps, threads, rounds) = (number(1, 64), number(2, 200), number(3, 1), number(4, 1));
     // Further names are vehicles, which the environments have in turn.
-    let vehicles: Vec<String> = std::env::args().skip(5).collect();
+    let mut vehicles: Vec<String> = std::env::args().skip(5).collect();
+    let told = vehicles.pop_if(|last| last == "--info").is_some();
     let vehicle = |index: usize| vehicles.get(index % vehicles.len().max(1)).cloned();
     let origin = |index| Origin {
         distribution: Some("train-v1".to_owned()),
@@ -34,6 +35,8 @@ fn main() {
     let mut observations = vec![0.0; count * setup.observations.rows().len()];
     let mut rewards = vec![0.0; count];
     let mut parts = vec![0.0; count * PARTS];
+    let mut costs = vec![0.0; if told { count } else { 0 }];
+    let mut masks = vec![false; if told { count * setup.actions.mask_length() } else { 0 }];
     let (mut terminated, mut truncated) = (vec![false; count], vec![false; count]);
     let (mut sum, mut all_s, mut shortest_s) = (0.0, 0.0, vec![f64::INFINITY; steps]);
     for _ in 0..rounds {
@@ -52,6 +55,7 @@ fn main() {
                 terminated: &mut terminated,
                 truncated: &mut truncated,
                 parts: &mut parts,
+                extras: Extras { costs: &mut costs, masks: &mut masks, ..Extras::default() },
             };
             let start = Instant::now();
             vector.step(Actions::Levels(&levels), &mut results).expect("built in");

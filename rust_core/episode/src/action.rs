@@ -3,8 +3,10 @@
 use crate::defaults::Defaults;
 use crate::rows::{ActionRow, RowSet, unknown};
 use hp_plant::architecture::layout::{ACTUATOR_PLACES, BranchSide, CABIN_PLACES, Layout};
+use hp_plant::circuits::branches::BranchTemperatures;
 use hp_plant::command::{Command, Purpose, Scale};
 use hp_plant::error::{PlantError, PlantResult};
+use hp_plant::numerics::thermal_network::Node;
 use hp_plant::plant::{Disturbance, Plant};
 use hp_plant::state::State;
 use std::collections::BTreeMap;
@@ -211,6 +213,90 @@ pub struct FittedActions {
     selected: [bool; ACTUATOR_PLACES],
     /// Rows of the command where the vehicle has all columns and the same options; empty otherwise.
     rows: Vec<usize>,
+    /// A mask but for what the checks say.
+    always: Vec<bool>,
+    /// Options that temperatures decide about; none where a check needs more than [`Check`] looks at.
+    checks: Option<Vec<Check>>,
+}
+
+/// An option of a mask that the temperatures on both sides of a branch decide about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Check {
+    /// Where it stands in the mask.
+    place: usize,
+    branch: usize,
+    /// Coolant that it gets.
+    inlet: Inlet,
+    other: Other,
+    out_of_loop: bool,
+}
+
+/// Coolant that a branch gets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Inlet {
+    Supply(Node),
+    /// Behind the exchanger of a loop, where branches in series begin, with the node of its return.
+    BehindExchanger {
+        circuit: usize,
+        back: Node,
+    },
+}
+
+impl Inlet {
+    #[inline]
+    fn temperature_k(self, plant: &Plant, state: &State) -> f64 {
+        match self {
+            Self::Supply(node) => state.temperatures_k[node.index()],
+            Self::BehindExchanger { circuit, back } => {
+                let specific_heat_j_kg_k = plant.vehicle.loops[circuit].circuit.coolant_specific_heat_j_kg_k;
+                let rate_w_k = state.pumps[circuit].flow_kg_s * specific_heat_j_kg_k;
+                state.temperatures_k[back.index()] + state.entered_w[circuit] / rate_w_k
+            }
+        }
+    }
+}
+
+/// What is on the other side of a branch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Other {
+    Node(Node),
+    Ambient,
+    /// Air into a cabin's core, recirculated as in cooling or not.
+    Core {
+        cabin: usize,
+        air: Node,
+        cooling: bool,
+    },
+}
+
+impl Check {
+    /// The check of a branch; none where exchangers in one air or rows that the agent controls matter too.
+    fn of(layout: &Layout, selected: &[bool], branch: usize, place: usize) -> Option<Self> {
+        let row = layout.branches[branch];
+        let other = match row.side {
+            BranchSide::Mass(node) => Other::Node(node),
+            BranchSide::Plate(from) => Other::Node(layout.loops[from].back),
+            BranchSide::Ambient(_) => Other::Ambient,
+            BranchSide::Core(cabin) => {
+                Other::Core { cabin, air: layout.cabins[cabin].air, cooling: !row.out_of_loop }
+            }
+        };
+        let controlled = match row.side {
+            BranchSide::Core(cabin) => {
+                let rows = &layout.cabins[cabin];
+                selected[rows.recirculation_row] || selected[rows.blower_row]
+            }
+            BranchSide::Ambient(end) => layout.front_ends[end].stream.is_some(),
+            _ => false,
+        };
+        let circuit = &layout.loops[row.circuit];
+        let inlet = if row.series {
+            Inlet::BehindExchanger { circuit: row.circuit, back: circuit.back }
+        } else {
+            Inlet::Supply(circuit.supply)
+        };
+        (!controlled).then_some(Self { place, branch, inlet, other, out_of_loop: row.out_of_loop })
+    }
 }
 
 impl FittedActions {
@@ -234,7 +320,9 @@ impl FittedActions {
             .collect();
         let plain = columns.iter().all(|column| column.translation.is_none());
         let rows: Option<Vec<usize>> = columns.iter().map(|column| column.row).collect();
-        Self { columns, selected, rows: rows.filter(|_| plain).unwrap_or_default() }
+        let rows = rows.filter(|_| plain).unwrap_or_default();
+        let (always, checks) = mask_plan(table, layout, &columns, &selected);
+        Self { columns, selected, rows, always, checks }
     }
 
     /// Whether a row of the vehicle is selected.
@@ -317,7 +405,40 @@ impl FittedActions {
         defaults: &Defaults,
         mask: &mut [bool],
     ) {
-        let asked = Asked { plant, state, disturbance, defaults, actions: self };
+        let Some(checks) = &self.checks else {
+            return self.write_mask_of_any(table, plant, state, disturbance, defaults, mask);
+        };
+        mask.copy_from_slice(&self.always);
+        let ambient_k = disturbance.air.temperature_k;
+        for check in checks {
+            let inlet_k = check.inlet.temperature_k(plant, state);
+            let other_k = match check.other {
+                Other::Node(node) => state.temperatures_k[node.index()],
+                Other::Ambient => ambient_k,
+                Other::Core { cabin, air, cooling } => {
+                    let share = defaults.effective_recirculation(cabin, cooling);
+                    (1.0 - share) * ambient_k + share * state.temperatures_k[air.index()]
+                }
+            };
+            let difference_k = if check.out_of_loop { inlet_k - other_k } else { other_k - inlet_k };
+            let connected = state.connected[check.branch];
+            mask[check.place] = plant.branches.allows(check.branch, difference_k, ambient_k, connected);
+        }
+    }
+
+    /// The same for any architecture and any rows.
+    #[cold]
+    fn write_mask_of_any(
+        &self,
+        table: &ActionTable,
+        plant: &Plant,
+        state: &State,
+        disturbance: &Disturbance,
+        defaults: &Defaults,
+        mask: &mut [bool],
+    ) {
+        let temperatures = plant.branch_temperatures(state, &[0.0; CABIN_PLACES], disturbance);
+        let asked = Asked { plant, state, disturbance, defaults, actions: self, temperatures };
         let mut place = 0;
         for (column, &count) in self.columns.iter().zip(&table.option_counts) {
             for option in 0..count {
@@ -332,6 +453,41 @@ impl FittedActions {
             }
         }
     }
+}
+
+/// The branch that an option of a row of the command connects, if it is one.
+fn branch_of(layout: &Layout, row: usize, option: usize) -> Option<usize> {
+    let Purpose::Connection(member) = layout.actuators[row].purpose else { return None };
+    layout.members[member].options.get(option.checked_sub(1)?).copied()
+}
+
+/// What is always granted, and the checks of what is not; see [`FittedActions`].
+fn mask_plan(
+    table: &ActionTable,
+    layout: &Layout,
+    columns: &[Column],
+    selected: &[bool],
+) -> (Vec<bool>, Option<Vec<Check>>) {
+    let (mut always, mut checks) = (Vec::new(), Some(Vec::new()));
+    for (column, &count) in columns.iter().zip(&table.option_counts) {
+        for option in 0..count {
+            let own = match (column.row, &column.translation) {
+                (None, _) => None,
+                (Some(_), None) => Some(option),
+                (Some(_), Some(translation)) => translation.own[option],
+            };
+            let branch = column.row.zip(own).and_then(|(row, own)| branch_of(layout, row, own));
+            if let Some(branch) = branch {
+                let check = Check::of(layout, selected, branch, always.len());
+                checks = checks.zip(check).map(|(mut all, check)| {
+                    all.push(check);
+                    all
+                });
+            }
+            always.push(own.is_some() || (column.row.is_none() && option == 0));
+        }
+    }
+    (always, checks)
 }
 
 /// How shared options differ from own ones, if they do.
@@ -356,23 +512,23 @@ struct Asked<'a> {
     disturbance: &'a Disturbance,
     defaults: &'a Defaults,
     actions: &'a FittedActions,
+    /// Those that drive each branch, with fresh air for the cabins.
+    temperatures: BranchTemperatures,
 }
 
 impl Asked<'_> {
     fn granted(&self, row: usize, option: usize) -> bool {
         let layout = self.plant.layout();
-        let Purpose::Connection(member) = layout.actuators[row].purpose else { return true };
-        let Some(&branch) = option.checked_sub(1).and_then(|place| layout.members[member].options.get(place))
-        else {
-            return true;
-        };
+        let Some(branch) = branch_of(layout, row, option) else { return true };
         let BranchSide::Core(cabin) = layout.branches[branch].side else {
-            return self.allowed(branch, [0.0; CABIN_PLACES]);
+            return self.allowed(branch, &self.temperatures);
         };
         let at = |share: f64| {
-            let mut recirculation = [0.0; CABIN_PLACES];
-            recirculation[cabin] = share;
-            self.allowed(branch, recirculation)
+            let mut temperatures = self.temperatures;
+            let (outside_k, inside_k) =
+                (self.disturbance.air.temperature_k, temperatures.nodes_k[layout.cabins[cabin].air.index()]);
+            temperatures.core_inlet_k[cabin] = (1.0 - share) * outside_k + share * inside_k;
+            self.allowed(branch, &temperatures)
         };
         let cabin_rows = &layout.cabins[cabin];
         if self.actions.selects(cabin_rows.recirculation_row) || self.actions.selects(cabin_rows.blower_row) {
@@ -384,22 +540,31 @@ impl Asked<'_> {
         }
     }
 
-    fn allowed(&self, branch: usize, recirculation: [f64; CABIN_PLACES]) -> bool {
-        let temperatures = self.plant.branch_temperatures(self.state, &recirculation, self.disturbance);
-        let difference_k = self.plant.branch_difference_k(&temperatures, branch);
+    fn allowed(&self, branch: usize, temperatures: &BranchTemperatures) -> bool {
+        let difference_k = self.plant.branch_difference_k(temperatures, branch);
         let ambient_k = self.disturbance.air.temperature_k;
         self.plant.branches.allows(branch, difference_k, ambient_k, self.state.connected[branch])
     }
 
-    /// Recirculated share; some of it may be held back for the sake of fresh air.
     fn effective(&self, cabin: usize, blower: f32, recirculation: f32) -> f64 {
-        let (ranges, rows) = (&self.plant.ranges, &self.plant.layout().cabins[cabin]);
-        let level = ranges.physical(rows.blower_row, blower);
-        let share = ranges.physical(rows.recirculation_row, recirculation);
-        let cabin = &self.plant.vehicle.cabins[cabin];
-        let occupants = self.disturbance.occupants * cabin.occupant_share;
-        cabin.parameters.ventilation(level, share, occupants).recirculation
+        effective_recirculation(self.plant, self.disturbance.occupants, cabin, blower, recirculation)
     }
+}
+
+/// Recirculated share; some of it may be held back for the sake of fresh air.
+#[inline]
+pub(crate) fn effective_recirculation(
+    plant: &Plant,
+    occupants: f64,
+    cabin: usize,
+    blower: f32,
+    recirculation: f32,
+) -> f64 {
+    let (ranges, rows) = (&plant.ranges, &plant.layout().cabins[cabin]);
+    let level = ranges.physical(rows.blower_row, blower);
+    let share = ranges.physical(rows.recirculation_row, recirculation);
+    let cabin = &plant.vehicle.cabins[cabin];
+    cabin.parameters.ventilation(level, share, occupants * cabin.occupant_share).recirculation
 }
 
 #[cfg(test)]
@@ -520,6 +685,40 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_mask_is_the_same_by_checks_and_by_all_temperatures() {
+        // Rows of another car too, so that some are lacking and options are translated.
+        let shared = architecture("three-loops").expect("built in");
+        let mut with_checks = 0;
+        for vehicle in
+            ["jeffs2019", "jeffs2019-three-loops", "jeffs2019-direct", "jeffs2019-no-thermal-battery"]
+        {
+            for scenario in ["jeffs2019/case1-4", "ours/hot-soak-plus35"] {
+                let experiment =
+                    Experiment::with_vehicle(scenario, Some(vehicle), None, &[]).expect("built in");
+                let layout = experiment.plant.layout();
+                let set = RowSet::of([layout, &shared]).expect("the same by the same name");
+                let table = table(&["default"], &set).expect("built in");
+                let actions = FittedActions::of(&table, layout);
+                with_checks += usize::from(actions.checks.is_some());
+                let defaults = Defaults::of(&experiment);
+                let mut run = experiment.start();
+                for _ in 0..900 {
+                    let disturbance = experiment.disturbance(run.steps);
+                    let (mut one, mut other) =
+                        (vec![false; table.mask_length()], vec![false; table.mask_length()]);
+                    let (plant, state) = (&experiment.plant, &run.state);
+                    actions.write_mask(&table, plant, state, &disturbance, &defaults, &mut one);
+                    actions.write_mask_of_any(&table, plant, state, &disturbance, &defaults, &mut other);
+                    assert_eq!(one, other, "{vehicle}, {scenario}, {}", run.steps);
+                    let command = experiment.rule_based_command(&mut run);
+                    experiment.step(&mut run, &command);
+                }
+            }
+        }
+        assert!(with_checks >= 4, "{with_checks}");
     }
 
     #[test]

@@ -1,46 +1,61 @@
 //! What rows do that the agent does not control: what the rule-based controller would ask of them.
 
-use crate::action::{FittedActions, chosen};
+use crate::action::{FittedActions, effective_recirculation};
 use hp_plant::architecture::declaration::Level;
-use hp_plant::architecture::layout::{ExchangerSide, Layout};
+use hp_plant::architecture::layout::{
+    CABIN_PLACES, EXCHANGER_PLACES, ExchangerSide, FRONT_END_PLACES, Layout,
+};
 use hp_plant::command::{Command, MAXIMUM_REQUEST_W, Purpose};
 use hp_trip::controllers::rule_based::CabinMode;
 use hp_trip::experiment::Experiment;
 
-/// An option of a choice, found in a command.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// An option of a choice, found in a command as [`chosen`] finds it.
+///
+/// [`chosen`]: crate::action::chosen
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 struct Ask {
-    row: usize,
-    count: usize,
-    option: usize,
+    row: u8,
+    /// Number of the last option.
+    last: u8,
+    option: u8,
 }
 
 impl Ask {
     fn of(layout: &Layout, row: usize, option: usize) -> Self {
-        Self { row, count: layout.actuators[row].options().len(), option }
+        let last = layout.actuators[row].options().len() - 1;
+        Self { row: row as u8, last: last as u8, option: option as u8 }
     }
 
     #[inline]
     fn is_in(self, command: &Command) -> bool {
-        chosen(self.count, command.0[self.row]) == self.option
+        let last = f64::from(self.last);
+        let place = 0.5 * (f64::from(command.0[usize::from(self.row)]) + 1.0) * (last + 1.0);
+        place.floor().max(0.0).min(last) == f64::from(self.option)
     }
 }
 
+/// Most options that ask for air conditioning: the cooling core of each cabin, and evaporators.
+const ASKS: usize = CABIN_PLACES + EXCHANGER_PLACES;
+
 /// Recirculation of a cabin, which follows what is asked for it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct CabinDefaults {
-    recirculation_row: usize,
-    /// Any of these asks for air conditioning: the connection of its cooling core, valves of its evaporators.
-    cooling: Vec<Ask>,
+    recirculation_row: u8,
+    /// Its first option among those that ask for air conditioning, and how many there are: the connection of its cooling core,
+    /// valves of its evaporators.
+    first: u8,
+    count: u8,
     heating_recirculation: f32,
     cooling_recirculation: f32,
+    /// What of them is recirculated with the occupants that a trip has, while it is heated and cooled.
+    effective: [f64; 2],
 }
 
 /// A front-end exchanger's request, which is unlimited while heat is to be rejected.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Rejection {
     rejects: Ask,
-    request_row: usize,
+    request_row: u8,
     unlimited: f32,
 }
 
@@ -49,11 +64,15 @@ struct Rejection {
 /// Flows, blower, set point and requested heat flows are those of scenario and controller. Two kinds of rows follow what
 /// the agent asks for: while it asks to cool a cabin (cooling core connected, or a valve of one of its evaporators open), that
 /// cabin's air is recirculated as in air conditioning, and with a front-end exchanger on a hot loop its request is unlimited.
+/// All of it but requests of schedules stands in place: to follow pointers took longer than the rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Defaults {
     command: Command,
-    cabins: Vec<CabinDefaults>,
-    rejections: Vec<Rejection>,
+    cabins: [CabinDefaults; CABIN_PLACES],
+    cabin_count: u8,
+    rejections: [Rejection; FRONT_END_PLACES],
+    rejection_count: u8,
+    asks: [Ask; ASKS],
     /// Rows of requests, where a schedule changes them.
     requests: Vec<usize>,
 }
@@ -66,26 +85,49 @@ impl Defaults {
         let (settings, roles) = (experiment.rules.constant_settings(), experiment.rules.roles());
         let mut demand = experiment.commander.requested(0.0);
         settings.enter(CabinMode::Heating, roles, &mut demand);
-        let cabins = layout.cabins.iter().enumerate().map(|(place, cabin)| CabinDefaults {
-            recirculation_row: cabin.recirculation_row,
-            cooling: cooling(layout, place),
-            heating_recirculation: ranges.normalise(cabin.recirculation_row, settings.heating_recirculation),
-            cooling_recirculation: ranges.normalise(cabin.recirculation_row, settings.cooling_recirculation),
-        });
-        let rejections = roles.front_ends.iter().filter_map(|front_end| {
-            Some(Rejection {
-                rejects: Ask::of(layout, front_end.row, front_end.rejects?.option),
-                request_row: front_end.request_row,
+        let command = ranges.encode(&demand);
+        let (mut asks, mut asked) = ([Ask::default(); ASKS], 0);
+        let mut cabins = [CabinDefaults::default(); CABIN_PLACES];
+        for (place, cabin) in layout.cabins.iter().enumerate() {
+            let own = cooling(layout, place);
+            asks[asked..asked + own.len()].copy_from_slice(&own);
+            let normalised = |share: f64| ranges.normalise(cabin.recirculation_row, share);
+            let blower = command.0[cabin.blower_row];
+            let share_of = |share: f64| {
+                let occupants = experiment.disturbance(0).occupants;
+                effective_recirculation(&experiment.plant, occupants, place, blower, normalised(share))
+            };
+            cabins[place] = CabinDefaults {
+                recirculation_row: cabin.recirculation_row as u8,
+                first: asked as u8,
+                count: own.len() as u8,
+                heating_recirculation: normalised(settings.heating_recirculation),
+                cooling_recirculation: normalised(settings.cooling_recirculation),
+                effective: [settings.heating_recirculation, settings.cooling_recirculation].map(share_of),
+            };
+            asked += own.len();
+        }
+        let mut rejections = [Rejection::default(); FRONT_END_PLACES];
+        let mut rejection_count = 0;
+        for front_end in &roles.front_ends {
+            let Some(rejects) = front_end.rejects else { continue };
+            rejections[rejection_count] = Rejection {
+                rejects: Ask::of(layout, front_end.row, rejects.option),
+                request_row: front_end.request_row as u8,
                 unlimited: ranges.normalise(front_end.request_row, MAXIMUM_REQUEST_W),
-            })
-        });
+            };
+            rejection_count += 1;
+        }
         let requests =
             layout.actuators.iter().enumerate().filter(|(_, row)| matches!(row.purpose, Purpose::Request(_)));
         let changing = experiment.commander.requests_change();
         Self {
-            command: ranges.encode(&demand),
-            cabins: cabins.collect(),
-            rejections: rejections.collect(),
+            command,
+            cabins,
+            cabin_count: layout.cabins.len() as u8,
+            rejections,
+            rejection_count: rejection_count as u8,
+            asks,
             requests: requests.map(|(row, _)| row).filter(|_| changing).collect(),
         }
     }
@@ -103,6 +145,13 @@ impl Defaults {
         if cooling { cabin.cooling_recirculation } else { cabin.heating_recirculation }
     }
 
+    /// Share of a cabin's air that is recirculated while it is cooled or not, fresh air for its occupants held back.
+    #[must_use]
+    #[inline]
+    pub fn effective_recirculation(&self, cabin: usize, cooling: bool) -> f64 {
+        self.cabins[cabin].effective[usize::from(cooling)]
+    }
+
     /// The whole command for values of the selected rows.
     #[must_use]
     pub fn complete(
@@ -112,27 +161,43 @@ impl Defaults {
         experiment: &Experiment,
         time_s: f64,
     ) -> Command {
-        let mut command = self.command;
+        let mut command = Command::default();
+        self.complete_into(actions, values, experiment, time_s, &mut command);
+        command
+    }
+
+    /// [`Self::complete`] that writes the command to where it is kept.
+    pub fn complete_into(
+        &self,
+        actions: &FittedActions,
+        values: &[f32],
+        experiment: &Experiment,
+        time_s: f64,
+        command: &mut Command,
+    ) {
+        *command = self.command;
         if !self.requests.is_empty() {
             let requested = experiment.commander.requested(time_s);
             for &row in &self.requests {
                 command.0[row] = experiment.plant.ranges.normalise(row, requested[row]);
             }
         }
-        actions.enter(values, &mut command);
-        for cabin in &self.cabins {
-            if !actions.selects(cabin.recirculation_row) {
-                let cooling = cabin.cooling.iter().any(|ask| ask.is_in(&command));
+        actions.enter(values, command);
+        for cabin in self.cabins.iter().take(usize::from(self.cabin_count)) {
+            let row = usize::from(cabin.recirculation_row);
+            if !actions.selects(row) {
+                let own = self.asks.iter().skip(usize::from(cabin.first)).take(usize::from(cabin.count));
+                let cooling = own.fold(false, |cooling, ask| cooling | ask.is_in(command));
                 let share = if cooling { cabin.cooling_recirculation } else { cabin.heating_recirculation };
-                command.0[cabin.recirculation_row] = share;
+                command.0[row] = share;
             }
         }
-        for rejection in &self.rejections {
-            if !actions.selects(rejection.request_row) && rejection.rejects.is_in(&command) {
-                command.0[rejection.request_row] = rejection.unlimited;
+        for rejection in self.rejections.iter().take(usize::from(self.rejection_count)) {
+            let row = usize::from(rejection.request_row);
+            if !actions.selects(row) && rejection.rejects.is_in(command) {
+                command.0[row] = rejection.unlimited;
             }
         }
-        command
     }
 }
 
@@ -156,7 +221,7 @@ fn cooling(layout: &Layout, cabin: usize) -> Vec<Ask> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::action::ActionTable;
+    use crate::action::{ActionTable, chosen};
     use crate::rows::RowSet;
     use std::collections::BTreeMap;
 
@@ -188,10 +253,25 @@ mod tests {
     }
 
     #[test]
+    fn an_option_is_found_where_the_plant_finds_it() {
+        let layout = hp_plant::config::vehicle::architecture("jeffs2019").expect("built in");
+        let row = layout.actuator("ambient").expect("there");
+        let count = layout.actuators[row].options().len();
+        let mut command = Command::default();
+        for step in -150..=150 {
+            command.0[row] = step as f32 / 120.0;
+            let found: Vec<usize> =
+                (0..count).filter(|&option| Ask::of(&layout, row, option).is_in(&command)).collect();
+            assert_eq!(found, [chosen(count, command.0[row])], "{}", command.0[row]);
+        }
+    }
+
+    #[test]
     fn a_cabin_without_connection_is_cooled_by_the_valve_of_its_evaporator() {
         let layout = hp_plant::config::vehicle::architecture("direct").expect("built in");
         let asks = cooling(&layout, 0);
-        let names: Vec<&str> = asks.iter().map(|ask| layout.actuators[ask.row].name.as_str()).collect();
+        let names: Vec<&str> =
+            asks.iter().map(|ask| layout.actuators[usize::from(ask.row)].name.as_str()).collect();
         assert_eq!((names, asks[0].option), (vec!["cabin_evaporator"], 1));
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::defaults::Defaults;
 use crate::garage::Trip;
-use crate::observation::Look;
+use crate::observation::{Clipped, Look};
 use crate::random::Random;
 use crate::reference::ReferenceConditions;
 use crate::reward::{Meter, Parts, Terms};
@@ -26,8 +26,27 @@ pub struct Outcome {
     pub reward: f64,
     /// Its parts.
     pub parts: Parts,
+    /// What it was counted from.
+    pub terms: Terms,
     /// Why the trip is over, if it is.
     pub end: Option<EndReason>,
+}
+
+/// What a trip is, for those who ask.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Facts {
+    /// Scenario by name, or the distribution's template.
+    pub scenario: Arc<str>,
+    /// Vehicle by name or path.
+    pub vehicle: String,
+    /// Drive cycle by name or path.
+    pub cycle: String,
+    /// Part of the cycle that is driven [s]; the whole where absent.
+    pub window_s: Option<(usize, usize)>,
+    /// Duration [s].
+    pub duration_s: usize,
+    /// Ambient temperature [degC].
+    pub ambient_temperature_degc: f64,
 }
 
 /// What changes while a trip is driven: plain data.
@@ -69,6 +88,7 @@ struct Snapshot {
     clock: Clock,
     random: Random,
     noise: Random,
+    clipped: Clipped,
     current: Option<Driven>,
 }
 
@@ -89,6 +109,7 @@ pub struct Restored {
     pub clock: Clock,
     random: Random,
     noise: Random,
+    clipped: Clipped,
     current: Option<Current>,
 }
 
@@ -99,6 +120,8 @@ pub struct Episode {
     source: Source,
     random: Random,
     noise: Random,
+    /// Of the observations of this trip.
+    clipped: Clipped,
     current: Option<Current>,
 }
 
@@ -140,7 +163,8 @@ impl Episode {
     /// An environment before its first reset.
     #[must_use]
     pub fn new(setup: Arc<Setup>, source: Source) -> Self {
-        Self { setup, source, random: Random::seeded(0), noise: Random::seeded(NOISE_STREAM), current: None }
+        let (random, noise) = (Random::seeded(0), Random::seeded(NOISE_STREAM));
+        Self { setup, source, random, noise, clipped: Clipped::default(), current: None }
     }
 
     /// Settings.
@@ -165,7 +189,24 @@ impl Episode {
             Source::Distribution(distribution) => distribution.draw(&mut self.random),
         };
         self.current = Some(Current::of(&self.setup, trip)?);
+        self.clipped = Clipped::default();
         Ok(())
+    }
+
+    /// [`Self::reset`], with the random numbers started anew where there is a seed.
+    ///
+    /// # Errors
+    /// As of [`Self::reset`]; nothing has changed then.
+    pub fn restart(&mut self, seed: Option<u64>, once: Option<&Source>) -> PlantResult<()> {
+        let before = (self.random.clone(), self.noise.clone());
+        if let Some(seed) = seed {
+            self.seed(seed);
+        }
+        let begun = self.reset(once);
+        if begun.is_err() {
+            (self.random, self.noise) = before;
+        }
+        begun
     }
 
     /// Whether a trip was begun.
@@ -190,7 +231,7 @@ impl Episode {
         progress.ruled = None;
         for _ in 0..self.setup.control_interval_s {
             let time_s = progress.run.state.time_s;
-            progress.asked = defaults.complete(&car.actions, values, experiment, time_s);
+            defaults.complete_into(&car.actions, values, experiment, time_s, &mut progress.asked);
             let disturbance = experiment.disturbance(progress.run.steps);
             progress.end = experiment.step(&mut progress.run, &progress.asked);
             added += progress.meter.add(
@@ -206,7 +247,7 @@ impl Episode {
             }
         }
         let parts = added.reward(&self.setup.reward);
-        Some(Outcome { reward: parts.iter().sum(), parts, end: progress.end })
+        Some(Outcome { reward: parts.iter().sum(), parts, terms: added, end: progress.end })
     }
 
     /// Writes the observation of now; all zero before the first reset.
@@ -231,7 +272,20 @@ impl Episode {
         let strength = self.setup.sensor_noise;
         let noise = &mut self.noise;
         let blur = (strength > 0.0).then_some(|| strength * noise.normal());
-        self.setup.observations.write(&car.observations, &look, blur, values);
+        self.setup.observations.write(&car.observations, &look, blur, values, &mut self.clipped);
+    }
+
+    /// Writes the observation of now once more, which does not count again what was clipped.
+    pub fn observe_again(&mut self, values: &mut [f32]) {
+        let clipped = self.clipped.clone();
+        self.observe(values);
+        self.clipped = clipped;
+    }
+
+    /// Share of the observations of this trip in which each row was beyond its bounds, and held there.
+    #[must_use]
+    pub fn clipped_shares(&self) -> Vec<f64> {
+        self.clipped.shares(self.setup.observations.rows().len())
     }
 
     /// Writes which options of the actions would be granted now; all before the first reset.
@@ -279,6 +333,30 @@ impl Episode {
         self.current.as_ref().map(|current| (&*current.origin, &current.experiment))
     }
 
+    /// What the trip in progress is.
+    #[must_use]
+    pub fn facts(&self) -> Option<Facts> {
+        let Current { origin, window, experiment, .. } = self.current.as_ref()?;
+        Some(Facts {
+            scenario: Arc::clone(origin),
+            vehicle: experiment.scenario.vehicle.clone(),
+            cycle: experiment.cycle.name().to_owned(),
+            window_s: *window,
+            duration_s: experiment.cycle.duration_s(),
+            ambient_temperature_degc: experiment.climate.ambient_temperature_degc.0,
+        })
+    }
+
+    /// Totals of the trip so far by name, as `simulate` gives them, and the share of observations in which a value was
+    /// clipped; none before the first reset.
+    #[must_use]
+    pub fn totals(&self) -> Vec<(String, Option<f64>)> {
+        let Some(Current { experiment, progress, .. }) = &self.current else { return Vec::new() };
+        let mut totals = progress.run.summary.values(experiment.plant.layout());
+        totals.push(("clipped_share".to_owned(), Some(self.clipped.share())));
+        totals
+    }
+
     /// The run in progress.
     #[must_use]
     pub fn run(&self) -> Option<&Run> {
@@ -309,7 +387,8 @@ impl Episode {
             fingerprint: current.car.fingerprint,
             progress: current.progress,
         });
-        let snapshot = Snapshot { clock, random: self.random.clone(), noise: self.noise.clone(), current };
+        let (random, noise) = (self.random.clone(), self.noise.clone());
+        let snapshot = Snapshot { clock, random, noise, clipped: self.clipped.clone(), current };
         snapshot::pack(&self.setup.identity, &snapshot)
     }
 
@@ -318,10 +397,13 @@ impl Episode {
     /// # Errors
     /// The bytes are not a state of an environment with these settings.
     pub fn read(&self, bytes: &[u8]) -> PlantResult<Restored> {
-        let Snapshot { clock, random, noise, current } = snapshot::unpack(&self.setup.identity, bytes)?;
+        let Snapshot { clock, random, noise, clipped, current } =
+            snapshot::unpack(&self.setup.identity, bytes)?;
         let current = match current {
             None => None,
             Some(Driven { trip, vehicle, fingerprint, progress }) => {
+                let checked = self.setup.garage.check(&trip);
+                checked.map_err(|error| snapshot::refused(format!("of a trip that cannot be ({error})")))?;
                 let begun = Current::of(&self.setup, trip)?;
                 if begun.car.fingerprint != fingerprint {
                     let now = vehicle_label(&begun.experiment);
@@ -332,7 +414,20 @@ impl Episode {
                 Some(Current { progress, ..begun })
             }
         };
-        Ok(Restored { clock, random, noise, current })
+        if !clipped.fits(self.setup.observations.rows().len()) {
+            return Err(snapshot::refused("with counts of observations that cannot be".to_owned()));
+        }
+        Ok(Restored { clock, random, noise, clipped, current })
+    }
+
+    /// Goes on from what [`Self::to_bytes`] wrote.
+    ///
+    /// # Errors
+    /// See [`Self::read`]; nothing has changed then.
+    pub fn restore(&mut self, bytes: &[u8]) -> PlantResult<()> {
+        let restored = self.read(bytes)?;
+        self.resume(restored);
+        Ok(())
     }
 
     /// Goes on from a state that was read.
@@ -340,5 +435,6 @@ impl Episode {
         self.current = restored.current;
         self.random = restored.random;
         self.noise = restored.noise;
+        self.clipped = restored.clipped;
     }
 }

@@ -2,6 +2,7 @@
 
 use hp_plant::config::initial::InitialParameters;
 use hp_plant::config::library::Override;
+use hp_plant::config::{Validate, Violation};
 use hp_plant::error::PlantResult;
 use hp_plant::plant::Plant;
 use hp_trip::drive_cycle::DriveCycle;
@@ -104,6 +105,25 @@ impl Garage {
         })
     }
 
+    /// Checks what a trip says as if a scenario file said it, and that its part of the cycle is there.
+    ///
+    /// # Errors
+    /// The first that is not right, or its cycle cannot be loaded.
+    pub fn check(&self, trip: &Trip) -> PlantResult<()> {
+        let climate = trip.climate.validate().map_err(|violation| violation.within("climate"));
+        climate
+            .and_then(|()| trip.initial.validate().map_err(|violation| violation.within("initial")))
+            .map_err(|violation| violation.in_file("trip"))?;
+        let duration_s = self.cycle(&trip.cycle)?.duration_s();
+        match trip.window {
+            Some((first_s, last_s)) if first_s >= last_s || last_s > duration_s => {
+                let allowed = format!("must be a part of the cycle's {duration_s} s");
+                Err(Violation::new("window", format!("{first_s} to {last_s} s"), allowed).in_file("trip"))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Makes a trip ready to drive.
     ///
     /// # Errors
@@ -129,5 +149,30 @@ impl Garage {
             controller_file: Arc::clone(&origin.controller_file),
             commander: Arc::clone(&origin.commander),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hp_plant::config::Celsius;
+
+    #[test]
+    fn a_trip_that_no_file_could_describe_is_refused() {
+        let garage = Garage::default();
+        let trip = garage.trip("jeffs2019/case1-1", None).expect("built in");
+        assert_eq!(garage.check(&trip), Ok(()));
+        let duration_s = garage.cycle(&trip.cycle).expect("built in").duration_s();
+        for window in [(0, duration_s + 1), (5, 5), (9, 3), (0, usize::MAX)] {
+            let error =
+                garage.check(&Trip { window: Some(window), ..trip.clone() }).expect_err("no such part");
+            assert!(error.to_string().contains("part of the cycle"), "{error}");
+        }
+        let mut hot = trip.clone();
+        hot.initial.set("cabin", Some(Celsius(315.0)));
+        assert!(garage.check(&hot).is_err());
+        let mut strange = trip;
+        strange.climate.solar_gain_w = f64::NAN;
+        assert!(garage.check(&strange).is_err());
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::action::{ActionTable, FittedActions};
 use crate::rows::{RowSet, branch_name, unknown};
+use hp_plant::architecture::layout::BRANCH_PLACES;
 use hp_plant::command::Command;
 use hp_plant::config::ZERO_CELSIUS_K;
 use hp_plant::error::{PlantError, PlantResult};
@@ -10,6 +11,8 @@ use hp_plant::numerics::thermal_network::Node;
 use hp_plant::plant::Plant;
 use hp_plant::signals::{Reader, View};
 use hp_trip::experiment::Experiment;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// A row of an observation.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,7 +54,7 @@ pub const PREVIEW_GROUP: &str = "preview";
 const PREVIEW_S: [usize; 6] = [2, 5, 10, 20, 40, 80];
 
 /// Longest time left that is told apart [s].
-const LONGEST_TIME_LEFT_S: f64 = 3600.0;
+const LONGEST_TIME_LEFT_S: f64 = 7200.0;
 
 fn row(name: impl Into<String>, unit: &'static str, bounds: (f64, f64), source: Source) -> Observed {
     let name = name.into();
@@ -112,7 +115,7 @@ pub fn all(set: &RowSet, actions: &ActionTable) -> Vec<Observed> {
         rows.push(row(name, "-", (-1.0, 1.0), Source::Asked(column)).meaning(meaning));
     }
     for seconds in PREVIEW_S {
-        let preview = row(format!("speed_in_{seconds}_s"), "m/s", (0.0, 40.0), Source::SpeedAhead(seconds));
+        let preview = row(format!("speed_in_{seconds}_s"), "m/s", (0.0, 50.0), Source::SpeedAhead(seconds));
         rows.push(preview.meaning("speed on the cycle ahead").hidden());
     }
     let left = row("time_left_s", "s", (0.0, LONGEST_TIME_LEFT_S), Source::TimeLeft);
@@ -141,12 +144,33 @@ fn refused(value: impl Into<String>, allowed: &str) -> PlantError {
     PlantError::InvalidArgument { what: "observations".into(), value: value.into(), allowed: allowed.into() }
 }
 
+fn replace_bounds(rows: &mut [Observed], name: &str, low: f64, high: f64) -> PlantResult<()> {
+    let Some(place) = rows.iter().position(|row| row.name == name) else {
+        let names: Vec<&str> = rows.iter().map(|row| row.name.as_str()).collect();
+        return Err(unknown("observation", name, &names));
+    };
+    if !(low.is_finite() && high.is_finite() && low < high && (high - low).is_finite()) {
+        return Err(PlantError::InvalidArgument {
+            what: format!("observation_bounds of `{name}`"),
+            value: format!("({low}, {high})"),
+            allowed: "must be two finite numbers, the lower first".into(),
+        });
+    }
+    (rows[place].low, rows[place].high) = (low, high);
+    Ok(())
+}
+
 impl ObservationTable {
-    /// Rows by name out of those that there are; a group stands for its rows.
+    /// Rows by name out of those that there are; a group stands for its rows. `bounds` replaces those of rows by name.
     ///
     /// # Errors
-    /// An unknown name, a row given twice, or none at all.
-    pub fn new(names: &[String], set: &RowSet, actions: &ActionTable) -> PlantResult<Self> {
+    /// An unknown name, a row given twice, or none at all; bounds of a row that is not selected, or that are none.
+    pub fn new(
+        names: &[String],
+        set: &RowSet,
+        actions: &ActionTable,
+        bounds: &BTreeMap<String, (f64, f64)>,
+    ) -> PlantResult<Self> {
         let all = all(set, actions);
         let mut rows: Vec<Observed> = Vec::new();
         for name in names {
@@ -177,6 +201,9 @@ impl ObservationTable {
         if rows.is_empty() {
             return Err(refused("empty", "must name at least one row"));
         }
+        for (name, &(low, high)) in bounds {
+            replace_bounds(&mut rows, name, low, high)?;
+        }
         let lows = rows.iter().map(|row| row.low).collect();
         let gains = rows.iter().map(|row| 2.0 / (row.high - row.low)).collect();
         Ok(Self { rows, lows, gains })
@@ -188,26 +215,32 @@ impl ObservationTable {
         &self.rows
     }
 
-    /// Writes an observation; `blur`, where there is noise, gives that of each measured row.
+    /// Writes an observation and counts what was beyond the bounds; `blur`, where there is noise, gives that of each
+    /// measured row.
     pub fn write(
         &self,
         fitted: &FittedObservations,
         look: &Look<'_>,
         blur: Option<impl FnMut() -> f64>,
         values: &mut [f32],
+        clipped: &mut Clipped,
     ) {
         match self.rows.len() {
             count if count <= USUAL_ROWS => {
-                self.write_through(fitted, look, blur, &mut [0.0; USUAL_ROWS], values)
+                self.write_through(fitted, look, blur, &mut [0.0; USUAL_ROWS], values, clipped)
             }
             count if count <= MANY_ROWS => {
-                self.write_through(fitted, look, blur, &mut [0.0; MANY_ROWS], values)
+                self.write_through(fitted, look, blur, &mut [0.0; MANY_ROWS], values, clipped)
             }
-            count => self.write_through(fitted, look, blur, &mut vec![0.0; count], values),
+            count => {
+                let mut zeros = vec![0.0; count.next_power_of_two()];
+                self.write_through(fitted, look, blur, &mut zeros, values, clipped)
+            }
         }
     }
 
-    #[inline]
+    /// Through numbers in the rows' own units; there is room for a power of two, see [`enter`].
+    #[inline(always)]
     fn write_through(
         &self,
         fitted: &FittedObservations,
@@ -215,9 +248,10 @@ impl ObservationTable {
         blur: Option<impl FnMut() -> f64>,
         zeros: &mut [f64],
         values: &mut [f32],
+        clipped: &mut Clipped,
     ) {
+        fitted.read(look, zeros);
         let numbers = &mut zeros[..self.rows.len()];
-        fitted.read(look, numbers);
         if let Some(mut blur) = blur {
             // In units of half the range.
             for ((&measured, number), gain) in fitted.measured.iter().zip(numbers.iter_mut()).zip(&self.gains)
@@ -225,10 +259,97 @@ impl ObservationTable {
                 *number += if measured { blur() / gain } else { 0.0 };
             }
         }
-        for (((value, number), low), gain) in values.iter_mut().zip(numbers).zip(&self.lows).zip(&self.gains)
+        let mut beyond = false;
+        for (((value, number), low), gain) in
+            values.iter_mut().zip(&mut *numbers).zip(&self.lows).zip(&self.gains)
         {
-            *value = ((*number - low) * gain - 1.0).clamp(-1.0, 1.0) as f32;
+            *number = (*number - low) * gain - 1.0;
+            beyond |= number.abs() > BEYOND;
+            *value = number.clamp(-1.0, 1.0) as f32;
         }
+        clipped.observations += 1;
+        if beyond {
+            clipped.count(numbers);
+        }
+    }
+}
+
+/// From here on a scaled value counts as beyond its bounds; what lies nearer is rounding.
+const BEYOND: f64 = 1.0 + 1e-6;
+
+/// How often values of a trip's observations were beyond the bounds of their rows, and held there.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Clipped {
+    observations: u64,
+    /// Observations with any value beyond its bounds.
+    any: u64,
+    /// Row by row; empty while there was none.
+    times: Vec<u64>,
+}
+
+impl Clipped {
+    #[cold]
+    fn count(&mut self, scaled: &[f64]) {
+        self.any += 1;
+        self.times.resize(scaled.len(), 0);
+        for (times, value) in self.times.iter_mut().zip(scaled) {
+            *times += u64::from(value.abs() > BEYOND);
+        }
+    }
+
+    /// Whether these can be the counts of so many rows.
+    #[must_use]
+    pub fn fits(&self, rows: usize) -> bool {
+        (self.times.is_empty() || self.times.len() == rows)
+            && self.any <= self.observations
+            && self.times.iter().all(|&times| times <= self.any)
+    }
+
+    /// Share of the observations in which any value was clipped.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        self.any as f64 / self.observations.max(1) as f64
+    }
+
+    /// Share of the observations in which each of so many rows was clipped.
+    #[must_use]
+    pub fn shares(&self, rows: usize) -> Vec<f64> {
+        let share = |row| {
+            let times = self.times.get(row).copied().unwrap_or_default();
+            times as f64 / self.observations.max(1) as f64
+        };
+        (0..rows).map(share).collect()
+    }
+}
+
+/// Where a row stands in an observation, and where its value is read.
+#[derive(Debug, Clone, Copy)]
+struct Entry<F> {
+    row: u16,
+    from: F,
+}
+
+/// An entry of a row and a position.
+fn entry(row: usize, from: usize) -> Entry<u16> {
+    Entry { row: row as u16, from: from as u16 }
+}
+
+/// So many entries are worked on at a time.
+const TOGETHER: usize = 4;
+
+/// Enters the values of some rows. The room is a power of two, so that a row is brought into it by masking: no branch for
+/// each.
+#[inline(always)]
+fn enter<F: Copy>(entries: &[Entry<F>], numbers: &mut [f64], read: impl Fn(F) -> f64) {
+    let last = numbers.len() - 1;
+    let (groups, rest) = entries.as_chunks::<TOGETHER>();
+    for group in groups {
+        for Entry { row, from } in group {
+            numbers[usize::from(*row) & last] = read(*from);
+        }
+    }
+    for Entry { row, from } in rest {
+        numbers[usize::from(*row) & last] = read(*from);
     }
 }
 
@@ -240,17 +361,18 @@ type Read = fn(&View<'_>) -> f64;
 /// A row that the vehicle lacks stands in no list: it reads as 0 in its own unit, held within its bounds, and without noise.
 #[derive(Debug, Clone, Default)]
 pub struct FittedObservations {
-    functions: Vec<(usize, Read)>,
-    readers: Vec<(usize, Reader)>,
-    temperatures: Vec<(usize, Node)>,
-    flows: Vec<(usize, Flow)>,
-    branches: Vec<(usize, usize)>,
+    functions: Vec<Entry<Read>>,
+    readers: Vec<Entry<Reader>>,
+    temperatures: Vec<Entry<Node>>,
+    flows: Vec<Entry<Flow>>,
+    branches: Vec<Entry<u16>>,
     /// Rows of the command.
-    asked: Vec<(usize, usize)>,
+    asked: Vec<Entry<u16>>,
     /// Columns of an action whose options are not the vehicle's own.
-    translated: Vec<(usize, usize)>,
+    translated: Vec<Entry<u16>>,
     actions: Option<FittedActions>,
-    speeds_ahead: Vec<(usize, usize)>,
+    /// By seconds.
+    speeds_ahead: Vec<Entry<u16>>,
     solar: Option<usize>,
     occupants: Option<usize>,
     time_left: Option<usize>,
@@ -268,26 +390,27 @@ impl FittedObservations {
         let mut places =
             Self { measured: table.rows.iter().map(Observed::measured).collect(), ..Self::default() };
         for (place, row) in table.rows.iter().enumerate() {
+            let at = place as u16;
             match row.source {
                 Source::Signal => match plant.signals.find(&row.name).map(|signal| signal.reader) {
-                    Some(Reader::Function(read)) => places.functions.push((place, read)),
-                    Some(Reader::Flow(flow)) => places.flows.push((place, flow)),
-                    Some(Reader::Temperature(node)) => places.temperatures.push((place, node)),
-                    Some(reader) => places.readers.push((place, reader)),
+                    Some(Reader::Function(from)) => places.functions.push(Entry { row: at, from }),
+                    Some(Reader::Flow(from)) => places.flows.push(Entry { row: at, from }),
+                    Some(Reader::Temperature(from)) => places.temperatures.push(Entry { row: at, from }),
+                    Some(from) => places.readers.push(Entry { row: at, from }),
                     None => places.measured[place] = false,
                 },
                 Source::Solar => places.solar = Some(place),
                 Source::Occupants => places.occupants = Some(place),
                 Source::Branch => {
                     let branch = branches.iter().position(|name| *name == row.name);
-                    places.branches.extend(branch.map(|branch| (place, branch)));
+                    places.branches.extend(branch.map(|branch| entry(place, branch)));
                 }
                 Source::Asked(column) => match actions.plain_row(column) {
-                    Some(row) => places.asked.push((place, row)),
-                    None if actions.has(column) => places.translated.push((place, column)),
+                    Some(row) => places.asked.push(entry(place, row)),
+                    None if actions.has(column) => places.translated.push(entry(place, column)),
                     None => {}
                 },
-                Source::SpeedAhead(seconds) => places.speeds_ahead.push((place, seconds)),
+                Source::SpeedAhead(seconds) => places.speeds_ahead.push(entry(place, seconds)),
                 Source::TimeLeft => places.time_left = Some(place),
             }
         }
@@ -296,38 +419,27 @@ impl FittedObservations {
     }
 
     /// Writes the values of all rows, which are 0 before.
-    #[inline]
+    #[inline(always)]
     fn read(&self, look: &Look<'_>, values: &mut [f64]) {
-        for &(place, read) in &self.functions {
-            values[place] = read(&look.view);
-        }
-        for &(place, reader) in &self.readers {
-            values[place] = reader.read(&look.view);
-        }
-        for &(place, node) in &self.temperatures {
-            values[place] = look.view.state.temperatures_k[node.index()] - ZERO_CELSIUS_K;
-        }
+        let (state, asked) = (look.view.state, look.asked);
+        enter(&self.functions, values, |read| read(&look.view));
+        enter(&self.readers, values, |reader| reader.read(&look.view));
+        enter(&self.temperatures, values, |node| state.temperatures_k[node.index()] - ZERO_CELSIUS_K);
         if let Some(record) = look.view.record {
-            for &(place, flow) in &self.flows {
-                values[place] = record.flows[flow];
-            }
+            enter(&self.flows, values, |flow| record.flows[flow]);
         }
-        for &(place, branch) in &self.branches {
-            values[place] = f64::from(u8::from(look.view.state.connected[branch]));
-        }
-        for &(place, row) in &self.asked {
-            values[place] = f64::from(look.asked.0[row]);
-        }
+        enter(&self.branches, values, |branch| {
+            f64::from(u8::from(state.connected[usize::from(branch) % BRANCH_PLACES]))
+        });
+        enter(&self.asked, values, |row| f64::from(asked.0[usize::from(row)]));
         if let Some(actions) = &self.actions {
-            for &(place, column) in &self.translated {
-                values[place] = f64::from(actions.value(column, look.asked));
-            }
+            enter(&self.translated, values, |column| f64::from(actions.value(usize::from(column), asked)));
         }
         let cycle = &look.experiment.cycle;
-        for &(place, seconds) in &self.speeds_ahead {
+        enter(&self.speeds_ahead, values, |seconds| {
             let speeds_m_s = cycle.speeds_m_s();
-            values[place] = speeds_m_s[(look.steps + seconds).min(speeds_m_s.len() - 1)];
-        }
+            speeds_m_s[(look.steps + usize::from(seconds)).min(speeds_m_s.len() - 1)]
+        });
         if let Some(place) = self.solar {
             values[place] = look.view.disturbance.solar_gain_w;
         }
@@ -351,7 +463,7 @@ mod tests {
         let set = rows_of(architectures);
         let actions = ActionTable::new(&["default".to_owned()], &set, &BTreeMap::new()).expect("built in");
         let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
-        let observations = ObservationTable::new(&names, &set, &actions).expect("built in");
+        let observations = ObservationTable::new(&names, &set, &actions, &BTreeMap::new()).expect("built in");
         (actions, observations)
     }
 
@@ -371,7 +483,26 @@ mod tests {
 
     #[test]
     fn rows_show_the_signals_of_their_names_in_any_order() {
-        let (actions, table) = tables(&["jeffs2019"], &[DEFAULT_GROUP]);
+        rows_show_their_signals(&["jeffs2019"], "default", &[DEFAULT_GROUP]);
+    }
+
+    /// More rows than [`USUAL_ROWS`], backwards, with those of cars whose members this one lacks.
+    #[test]
+    fn rows_show_their_signals_however_many_there_are() {
+        let cars = ["three-loops", "cabin-condenser", "direct", "low-temperature-radiator", "jeffs2019"];
+        let set = rows_of(&cars);
+        let actions = ActionTable::new(&["all".to_owned()], &set, &BTreeMap::new()).expect("built in");
+        let names: Vec<String> = all(&set, &actions).into_iter().rev().map(|row| row.name).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        assert!(names.len() > USUAL_ROWS, "{}", names.len());
+        rows_show_their_signals(&cars, "all", &names);
+    }
+
+    fn rows_show_their_signals(architectures: &[&str], group: &str, names: &[&str]) {
+        let set = rows_of(architectures);
+        let actions = ActionTable::new(&[group.to_owned()], &set, &BTreeMap::new()).expect("built in");
+        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+        let table = ObservationTable::new(&names, &set, &actions, &BTreeMap::new()).expect("built in");
         let experiment = Experiment::load("jeffs2019/case1-4", None, &[]).expect("built in");
         let fitted_actions = FittedActions::of(&actions, experiment.plant.layout());
         let fitted = FittedObservations::of(&table, &experiment.plant, &fitted_actions);
@@ -388,7 +519,7 @@ mod tests {
             };
             let look = Look { view, experiment: &experiment, asked: &asked, steps: run.steps };
             let mut shown = vec![0.0; table.rows().len()];
-            table.write(&fitted, &look, None::<fn() -> f64>, &mut shown);
+            table.write(&fitted, &look, None::<fn() -> f64>, &mut shown, &mut Clipped::default());
             signals.clear();
             experiment.look(&run, &mut signals);
             for (row, shown) in table.rows().iter().zip(shown) {
@@ -425,7 +556,7 @@ mod tests {
             View { plant: &experiment.plant, state: &run.state, record: None, disturbance: &disturbance };
         let look = Look { view, experiment: &experiment, asked: &Command([0.5; _]), steps: 0 };
         let mut shown = vec![9.0; table.rows().len()];
-        table.write(&fitted, &look, Some(|| 1.0), &mut shown);
+        table.write(&fitted, &look, Some(|| 1.0), &mut shown, &mut Clipped::default());
         let lacking = |row: &&(&Observed, f32)| {
             row.0.source == Source::Signal && experiment.plant.signals.find(&row.0.name).is_none()
         };

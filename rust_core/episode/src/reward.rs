@@ -101,7 +101,16 @@ macro_rules! terms {
             }
         }
 
+        /// Names of the terms, in their order.
+        pub const TERM_NAMES: &[&str] = &[$( stringify!($name), )*];
+
         impl Terms {
+            /// Values of the terms, in the order of [`TERM_NAMES`].
+            #[must_use]
+            pub fn values(&self) -> [f64; TERM_NAMES.len()] {
+                [$( self.$name, )*]
+            }
+
             #[inline]
             fn of(second: &Second<'_>) -> Self {
                 Self { $( $name: { let $second = second; $added }, )* }
@@ -214,6 +223,14 @@ impl Terms {
     #[must_use]
     pub fn attributable_energy_kwh(&self) -> f64 {
         self.chemical_energy_kwh - self.reference_energy_kwh
+    }
+
+    /// What a safe agent is held to, whatever the weights: kelvin hours of discomfort and of the battery outside its window,
+    /// and 1 for each stop of the compressor that a protection forced and for a trip that ended before arrival.
+    #[must_use]
+    #[inline]
+    pub fn cost(&self) -> f64 {
+        self.discomfort_k_h + self.battery_window_k_h + self.protection_trips + self.stranded
     }
 }
 

@@ -1,7 +1,8 @@
 //! Rows that agents of several vehicles share: actuators, signals and branches by name, in the order in which the vehicles
 //! bring them.
 
-use hp_plant::architecture::declaration::{MemberKind, among};
+use hp_plant::architecture::declaration::MemberKind;
+use hp_plant::architecture::flaw::among;
 use hp_plant::architecture::layout::Layout;
 use hp_plant::command::{Purpose, Scale};
 use hp_plant::error::{PlantError, PlantResult};

@@ -5,9 +5,10 @@ use crate::kinds::EPISODES;
 use crate::random::Random;
 use hp_plant::architecture::declaration::MemberKind;
 use hp_plant::architecture::layout::Layout;
+use hp_plant::config::initial::MEMBER_RANGE_DEGC;
 use hp_plant::config::library;
 use hp_plant::config::{Celsius, Validate, Violation, check_range};
-use hp_plant::error::PlantResult;
+use hp_plant::error::{PlantError, PlantResult};
 use hp_plant::parameters;
 use hp_trip::experiment::Experiment;
 use serde::{Deserialize, Serialize};
@@ -100,6 +101,16 @@ impl Validate for DistributionParameters {
         ] {
             check_range(key, low, f64::NEG_INFINITY, high)?;
         }
+        // The one thing that is drawn as a sum: all others are within what a scenario may say because their ranges are.
+        let hottest_cabin_degc = ranges.ambient_high_degc.0
+            + ranges.parked_cabin_k_w * season(ranges, ranges.ambient_high_degc.0) * ranges.solar_high_w;
+        if hottest_cabin_degc > MEMBER_RANGE_DEGC.1 {
+            let allowed = format!(
+                "must not let a cabin parked in {} W of sun at {} degC start at {hottest_cabin_degc} degC: at most {} is allowed",
+                ranges.solar_high_w, ranges.ambient_high_degc.0, MEMBER_RANGE_DEGC.1
+            );
+            return Err(Violation::new("ranges.parked_cabin_k_w", ranges.parked_cabin_k_w, allowed));
+        }
         Ok(())
     }
 }
@@ -119,6 +130,12 @@ pub struct Distribution {
 /// Sun rises from none at this ambient temperature to its highest at the hottest ambient [degC] (assumed).
 const SUNLESS_DEGC: f64 = -20.0;
 
+/// Share of the highest solar heat that there can be at an ambient temperature [-].
+fn season(ranges: &SampledRanges, ambient_degc: f64) -> f64 {
+    let span_k = ranges.ambient_high_degc.0 - SUNLESS_DEGC;
+    if span_k > 0.0 { ((ambient_degc - SUNLESS_DEGC) / span_k).clamp(0.0, 1.0) } else { 0.0 }
+}
+
 /// Name of the member that is the battery.
 fn battery_name(layout: &Layout) -> &str {
     let battery = layout.members.iter().find(|member| member.kind == MemberKind::Battery);
@@ -132,10 +149,11 @@ impl Distribution {
     /// Anything wrong in its file, or in the scenario and cycles that it names.
     pub fn load(name: &str, vehicle: Option<&str>, garage: &Garage) -> PlantResult<Self> {
         let parameters: DistributionParameters = library::load(EPISODES, name, &[])?;
-        let template = garage.experiment(&parameters.scenario, vehicle)?;
+        let named = |error: PlantError| error.named_by(name);
+        let template = garage.experiment(&parameters.scenario, vehicle).map_err(named)?;
         let mut standstills = Vec::with_capacity(parameters.cycles.len());
         for cycle in &parameters.cycles {
-            let speeds_m_s = garage.cycle(&cycle.name)?.speeds_m_s().to_vec();
+            let speeds_m_s = garage.cycle(&cycle.name).map_err(named)?.speeds_m_s().to_vec();
             standstills.push((0..speeds_m_s.len()).filter(|&second| speeds_m_s[second] == 0.0).collect());
         }
         let origin = parameters.scenario.as_str().into();
@@ -178,9 +196,7 @@ impl Distribution {
         let garage_degc = random.between(ranges.garage_low_degc.0, ranges.garage_high_degc.0);
         let soak_degc = if from_garage { garage_degc } else { ambient_degc };
         let dark = random.chance(ranges.dark_share);
-        let season =
-            ((ambient_degc - SUNLESS_DEGC) / (ranges.ambient_high_degc.0 - SUNLESS_DEGC)).clamp(0.0, 1.0);
-        let sun_w = random.between(0.0, ranges.solar_high_w) * season;
+        let sun_w = random.between(0.0, ranges.solar_high_w) * season(ranges, ambient_degc);
         climate.ambient_temperature_degc = Celsius(ambient_degc);
         climate.solar_gain_w = if dark { 0.0 } else { sun_w };
         climate.occupants = 1 + random.index(ranges.occupants_high as usize) as u32;
@@ -253,6 +269,32 @@ mod tests {
                 scenario.validate().unwrap_or_else(|violation| panic!("{name}: {violation:?}"));
             }
         }
+    }
+
+    #[test]
+    fn a_distribution_that_could_draw_what_no_scenario_may_say_is_refused() {
+        let built_in = library::text(EPISODES, "train-v1").expect("built in");
+        let told = |changes: &[(&str, f64)]| {
+            let mut table = hp_plant::config::bounded::toml(&built_in).expect("built in");
+            let ranges = table["ranges"].as_table_mut().expect("a section");
+            for &(key, value) in changes {
+                ranges.insert(key.to_owned(), value.into());
+            }
+            library::read::<DistributionParameters>("mine.toml", table).map_err(|error| error.to_string())
+        };
+        let hot = [("ambient_high_degc", 45.0), ("parked_cabin_k_w", 0.09), ("solar_high_w", 3000.0)];
+        let message = told(&hot).expect_err("315 degC");
+        assert!(
+            message.contains("ranges.parked_cabin_k_w` is 0.09") && message.contains("315 degC"),
+            "{message}"
+        );
+        assert!(
+            told(&[("ambient_high_degc", 45.0), ("parked_cabin_k_w", 0.018), ("solar_high_w", 3000.0)])
+                .is_ok()
+        );
+        // Where it is always too cold for the sun, there is none.
+        let dark = told(&[("ambient_low_degc", -20.0), ("ambient_high_degc", -20.0)]).expect("cold");
+        assert_eq!(season(&dark.ranges, -20.0), 0.0);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use crate::action::{ActionTable, FittedActions};
 use crate::garage::{Garage, Trip};
 use crate::kinds::REWARD;
+use crate::limits::{self, Narrow};
 use crate::observation::{FittedObservations, ObservationTable};
 use crate::reward::{self, RewardParameters};
 use crate::rows::RowSet;
@@ -34,6 +35,10 @@ pub struct Settings {
     pub action_options: BTreeMap<String, Vec<String>>,
     /// What the agent sees, in the order of an observation; names of rows or of groups of rows.
     pub observations: Vec<String>,
+    /// What is shown as -1 and as 1, by row; as in the table where absent.
+    pub observation_bounds: BTreeMap<String, (f64, f64)>,
+    /// What is told of a step beside the parts of its reward.
+    pub info: Vec<Told>,
     /// Reward file.
     pub reward: String,
     /// Changes of single weights.
@@ -46,6 +51,20 @@ pub struct Settings {
     pub sensor_noise: f64,
 }
 
+/// What a step can tell beside the parts of its reward.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Told {
+    /// What a safe agent is held to, see [`Terms::cost`].
+    ///
+    /// [`Terms::cost`]: crate::reward::Terms::cost
+    Cost,
+    /// Which options the plant would grant next.
+    ActionMask,
+    /// The terms that rewards and KPIs are made of.
+    Terms,
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -54,6 +73,8 @@ impl Default for Settings {
             actions: vec!["default".to_owned()],
             action_options: BTreeMap::new(),
             observations: vec!["default".to_owned()],
+            observation_bounds: BTreeMap::new(),
+            info: Vec::new(),
             reward: "balanced".to_owned(),
             reward_overrides: Vec::new(),
             overrides: Vec::new(),
@@ -105,6 +126,10 @@ pub struct Setup {
     pub actions: ActionTable,
     /// Observations.
     pub observations: ObservationTable,
+    /// What a step tells beside the parts of its reward.
+    pub told: Vec<Told>,
+    /// Rows whose bounds a vehicle can leave.
+    pub narrow: Vec<Narrow>,
     /// Weights of the reward.
     pub reward: RewardParameters,
     /// Seconds for which an action is held.
@@ -199,12 +224,21 @@ impl Setup {
         }
         let set = RowSet::of(vehicles.iter().map(|experiment| experiment.plant.layout()))?;
         let actions = ActionTable::new(&settings.actions, &set, &settings.action_options)?;
-        let observations = ObservationTable::new(&settings.observations, &set, &actions)?;
+        let observations =
+            ObservationTable::new(&settings.observations, &set, &actions, &settings.observation_bounds)?;
+        let narrow = vehicles.iter().flat_map(|experiment| {
+            limits::narrow(&observations, &experiment.scenario.vehicle, &experiment.plant.vehicle)
+        });
+        // Whoever gives bounds means them.
+        let chosen = &settings.observation_bounds;
+        let narrow: Vec<Narrow> = narrow.filter(|narrow| !chosen.contains_key(&narrow.row)).collect();
         let setup = Self {
             vehicle: settings.vehicle.clone(),
             continuous: settings.continuous,
             actions,
             observations,
+            narrow,
+            told: settings.info.clone(),
             control_interval_s: settings.control_interval_s,
             sensor_noise: settings.sensor_noise,
             garage,
@@ -261,7 +295,8 @@ fn identity(settings: &Settings, reward: &RewardParameters, vehicles: &[Arc<Expe
         }
     }
     let version = env!("CARGO_PKG_VERSION").to_owned();
-    let settings = Settings { vehicle: None, ..settings.clone() };
+    // What is told changes nothing.
+    let settings = Settings { vehicle: None, info: Vec::new(), ..settings.clone() };
     Identity {
         architectures: snapshot::fingerprint(
             &layouts.iter().map(|layout| format!("{layout:?}")).collect::<Vec<_>>(),

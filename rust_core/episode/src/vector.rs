@@ -2,9 +2,9 @@
 //!
 //! Each environment does what it would do alone: results do not depend on the number of threads.
 
-use crate::episode::{Clock, Episode};
+use crate::episode::{Clock, Episode, Facts, Outcome};
 use crate::prefetch::prefetch;
-use crate::reward::{PART_NAMES, Terms};
+use crate::reward::{PART_NAMES, Parts, TERM_NAMES, Terms};
 use crate::setup::Source;
 use crate::threads::{Stretch, Threads};
 use hp_plant::command::ACTUATOR_PLACES;
@@ -14,6 +14,9 @@ use std::sync::{Mutex, PoisonError};
 
 /// Parts of a reward.
 pub const PARTS: usize = PART_NAMES.len();
+
+/// Terms that rewards are counted from.
+pub const TERMS: usize = TERM_NAMES.len();
 
 /// What happens to an environment whose trip has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,6 +60,19 @@ pub struct Results<'a> {
     pub truncated: &'a mut [bool],
     /// Parts of the rewards, one part after the other.
     pub parts: &'a mut [f64],
+    /// What else is wanted.
+    pub extras: Extras<'a>,
+}
+
+/// Results that are worked out where there is room for them, one entry an environment; empty where nobody wants them.
+#[derive(Debug, Default)]
+pub struct Extras<'a> {
+    /// See [`Terms::cost`].
+    pub costs: &'a mut [f64],
+    /// Terms of the step, one after the other.
+    pub terms: &'a mut [f64],
+    /// Options that the plant would grant next, row by row.
+    pub masks: &'a mut [bool],
 }
 
 /// A trip that is over.
@@ -66,12 +82,27 @@ pub struct Finished {
     pub index: usize,
     /// Why it ended; cut off by the limit of steps where absent.
     pub end: Option<EndReason>,
+    /// What it was.
+    pub facts: Facts,
     /// Its terms.
     pub terms: Terms,
+    /// Its totals by name.
+    pub totals: Vec<(String, Option<f64>)>,
     /// Parts of the last reward.
-    pub parts: [f64; PARTS],
-    /// Its last observation, where the environment was reset at once.
-    pub last_observation: Option<Vec<f32>>,
+    pub parts: Parts,
+    /// Terms of the last step.
+    pub last_terms: Terms,
+    /// What was seen at its end, where the environment was reset at once.
+    pub last_seen: Option<LastSeen>,
+}
+
+/// What was seen at the end of a trip.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LastSeen {
+    /// Observation.
+    pub observation: Vec<f32>,
+    /// Options that the plant would have granted; empty where nobody wants them.
+    pub mask: Vec<bool>,
 }
 
 /// What else a step tells.
@@ -114,6 +145,9 @@ struct Batch<'a> {
     terminated: &'a mut [bool],
     truncated: &'a mut [bool],
     parts: [&'a mut [f64]; PARTS],
+    costs: &'a mut [f64],
+    terms: [&'a mut [f64]; TERMS],
+    masks: &'a mut [bool],
 }
 
 /// Consecutive environments with their entries of one array.
@@ -133,7 +167,9 @@ struct Job<'a> {
     reward: &'a mut f64,
     terminated: &'a mut bool,
     truncated: &'a mut bool,
-    parts: [f64; PARTS],
+    mask: &'a mut [bool],
+    /// What the step gave; nothing where a trip began.
+    outcome: Option<Outcome>,
     told: &'a Mutex<Told>,
     /// What will be worked on soon.
     ahead: Option<&'a Episode>,
@@ -156,7 +192,8 @@ impl Stretch for Batch<'_> {
     }
 
     fn take(&mut self, count: usize) -> Self {
-        let width = self.observations.len().checked_div(self.episodes.len()).unwrap_or_default();
+        let share = |length: usize| length.checked_div(self.episodes.len()).unwrap_or_default() * count;
+        let (observations, masks) = (share(self.observations.len()), share(self.masks.len()));
         let first = self.first;
         self.first += count.min(self.episodes.len());
         Self {
@@ -164,11 +201,14 @@ impl Stretch for Batch<'_> {
             episodes: cut(&mut self.episodes, count),
             elapsed: cut(&mut self.elapsed, count),
             over: cut(&mut self.over, count),
-            observations: cut(&mut self.observations, count * width),
+            observations: cut(&mut self.observations, observations),
             rewards: cut(&mut self.rewards, count),
             terminated: cut(&mut self.terminated, count),
             truncated: cut(&mut self.truncated, count),
             parts: self.parts.each_mut().map(|part| cut(part, count)),
+            costs: cut(&mut self.costs, count),
+            terms: self.terms.each_mut().map(|term| cut(term, count)),
+            masks: cut(&mut self.masks, masks),
         }
     }
 }
@@ -204,7 +244,8 @@ impl Vector {
             over: vec![false; count],
             autoreset,
             step_limit,
-            threads: Threads::new(threads),
+            // More than one an environment would have nothing to do.
+            threads: Threads::new(threads.min(count)),
         }
     }
 
@@ -242,11 +283,7 @@ impl Vector {
     /// # Errors
     /// See [`Episode::reset`].
     pub fn reset(&mut self, index: usize, seed: Option<u64>, once: Option<&Source>) -> PlantResult<()> {
-        let episode = &mut self.episodes[index];
-        if let Some(seed) = seed {
-            episode.seed(seed);
-        }
-        episode.reset(once)?;
+        self.episodes[index].restart(seed, once)?;
         self.elapsed[index] = 0;
         self.over[index] = false;
         self.begun[index] = true;
@@ -284,6 +321,8 @@ impl Vector {
             Clock { elapsed: self.elapsed[index], over: self.over[index] } = restored.clock;
             self.episodes[index].resume(restored);
             self.begun[index] = self.episodes[index].begun();
+            // A state of a single environment knows no clock.
+            self.over[index] |= self.episodes[index].end().is_some();
         }
         Ok(())
     }
@@ -294,7 +333,9 @@ impl Vector {
     /// A file of a new trip cannot be loaded.
     pub fn step(&mut self, actions: Actions<'_>, results: &mut Results<'_>) -> PlantResult<Events> {
         let count = self.episodes.len();
+        let Extras { costs, terms, masks } = &mut results.extras;
         let mut parts = results.parts.chunks_mut(count.max(1));
+        let mut terms = terms.chunks_mut(count.max(1));
         let all = Batch {
             first: 0,
             episodes: &mut self.episodes,
@@ -305,6 +346,9 @@ impl Vector {
             terminated: results.terminated,
             truncated: results.truncated,
             parts: std::array::from_fn(|_| parts.next().unwrap_or_default()),
+            costs,
+            terms: std::array::from_fn(|_| terms.next().unwrap_or_default()),
+            masks,
         };
         let (autoreset, step_limit) = (self.autoreset, self.step_limit);
         let told = Mutex::default();
@@ -355,6 +399,8 @@ impl Batch<'_> {
     ) {
         let Some(first) = self.episodes.first() else { return };
         let width = first.setup().observations.rows().len();
+        let mask_length = self.masks.len() / self.episodes.len();
+        let mut masks = &mut *self.masks;
         let mut rest = &mut *self.episodes;
         for (place, observation) in self.observations.chunks_mut(width).enumerate() {
             let Some(episode) = rest.split_off_first_mut() else { return };
@@ -367,14 +413,25 @@ impl Batch<'_> {
                 reward: &mut self.rewards[place],
                 terminated: &mut self.terminated[place],
                 truncated: &mut self.truncated[place],
-                parts: [0.0; PARTS],
+                mask: cut(&mut masks, mask_length),
+                outcome: None,
                 told,
                 ahead: rest.get(AHEAD - 1),
             };
             job.work(actions, autoreset, step_limit);
-            let parts = job.parts;
+            let outcome = job.outcome;
+            let parts = outcome.map_or([0.0; PARTS], |outcome| outcome.parts);
             for (all, value) in self.parts.iter_mut().zip(parts) {
                 all[place] = value;
+            }
+            if let Some(cost) = self.costs.get_mut(place) {
+                *cost = outcome.map_or(0.0, |outcome| outcome.terms.cost());
+            }
+            if !self.terms[0].is_empty() {
+                let terms = outcome.map_or([0.0; TERMS], |outcome| outcome.terms.values());
+                for (all, value) in self.terms.iter_mut().zip(terms) {
+                    all[place] = value;
+                }
             }
         }
     }
@@ -384,20 +441,29 @@ impl Job<'_> {
     fn work(&mut self, actions: Actions<'_>, autoreset: Autoreset, step_limit: Option<u64>) {
         self.fetch_ahead(0);
         (*self.reward, *self.terminated, *self.truncated) = (0.0, false, false);
-        if *self.over && autoreset == Autoreset::NextStep {
+        // Where trips are reset within the step, one that is over comes from a restored state.
+        if *self.over && autoreset != Autoreset::Disabled {
             self.begin();
         } else {
-            self.step(actions, autoreset, step_limit);
+            self.step(actions, step_limit);
         }
         self.fetch_ahead(1);
         self.episode.observe(self.observation);
+        if !self.mask.is_empty() {
+            self.episode.write_mask(self.mask);
+        }
         self.fetch_ahead(2);
+        if *self.over
+            && let Some(outcome) = self.outcome
+        {
+            self.finish(&outcome, autoreset);
+        }
     }
 
     /// Asks for a share of what will be worked on soon.
     fn fetch_ahead(&self, share: usize) {
         if let Some(episode) = self.ahead {
-            prefetch(episode, share, SHARES);
+            prefetch::<_, SHARES>(episode, share);
         }
     }
 
@@ -416,7 +482,7 @@ impl Job<'_> {
         what(&mut self.told.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
-    fn step(&mut self, actions: Actions<'_>, autoreset: Autoreset, step_limit: Option<u64>) {
+    fn step(&mut self, actions: Actions<'_>, step_limit: Option<u64>) {
         let table = &self.episode.setup().actions;
         let width = table.rows().len();
         let place = self.index * width..(self.index + 1) * width;
@@ -438,25 +504,35 @@ impl Job<'_> {
         let Some(outcome) = self.episode.step(values) else { return };
         *self.elapsed += 1;
         *self.reward = outcome.reward;
-        self.parts = outcome.parts;
         *self.terminated = outcome.end.is_some();
         *self.truncated = step_limit.is_some_and(|limit| *self.elapsed >= limit);
         *self.over = *self.terminated || *self.truncated;
-        if !*self.over {
-            return;
-        }
+        self.outcome = Some(outcome);
+    }
+
+    /// Tells of the end of a trip, and begins the next where that is wanted at once.
+    #[cold]
+    fn finish(&mut self, outcome: &Outcome, autoreset: Autoreset) {
+        let Some(facts) = self.episode.facts() else { return };
         let mut finished = Finished {
             index: self.index,
             end: outcome.end,
+            facts,
             terms: self.episode.terms().copied().unwrap_or_default(),
+            totals: self.episode.totals(),
             parts: outcome.parts,
-            last_observation: None,
+            last_terms: outcome.terms,
+            last_seen: None,
         };
         if autoreset == Autoreset::SameStep {
-            self.episode.observe(self.observation);
-            finished.last_observation = Some(self.observation.to_vec());
-            self.parts = [0.0; PARTS];
+            finished.last_seen =
+                Some(LastSeen { observation: self.observation.to_vec(), mask: self.mask.to_vec() });
+            self.outcome = None;
             self.begin();
+            self.episode.observe(self.observation);
+            if !self.mask.is_empty() {
+                self.episode.write_mask(self.mask);
+            }
         }
         self.tell(|told| told.events.finished.push(finished));
     }

@@ -5,7 +5,7 @@ use hp_episode::episode::{Clock, Episode};
 use hp_episode::random::Random;
 use hp_episode::rows::ActionRow;
 use hp_episode::setup::{Origin, Settings, Setup};
-use hp_episode::vector::{Actions, Autoreset, PARTS, Results, Vector};
+use hp_episode::vector::{Actions, Autoreset, Extras, PARTS, Results, Vector};
 use hp_plant::command::Scale;
 use hp_plant::error::PlantError;
 use std::collections::BTreeMap;
@@ -47,6 +47,7 @@ impl Driven {
             terminated: &mut terminated,
             truncated: &mut truncated,
             parts: &mut vec![0.0; count * PARTS],
+            extras: Extras::default(),
         };
         self.vector.step(Actions::Levels(levels), &mut results).expect("a scenario");
     }

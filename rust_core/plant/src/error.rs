@@ -53,6 +53,39 @@ pub enum PlantError {
         /// What would have been accepted, as a sentence fragment ("must be ...").
         allowed: String,
     },
+    /// A mistake of this package: something panicked.
+    #[error("internal error ({message}); please report it")]
+    Internal {
+        /// What was told, and where.
+        message: String,
+    },
+    /// Anything wrong in a file that another one names.
+    #[error("{error} (named by {by})")]
+    Named {
+        /// File that names it.
+        by: String,
+        /// What is wrong.
+        error: Box<PlantError>,
+    },
+}
+
+impl PlantError {
+    /// The same error with the file that asked for the one that is wrong; of several the innermost.
+    #[must_use]
+    pub fn named_by(self, file: &str) -> Self {
+        match self {
+            Self::Syntax { .. } | Self::OutOfRange { .. } | Self::Unknown { .. } => {
+                Self::Named { by: file.to_owned(), error: Box::new(self) }
+            }
+            _ => self,
+        }
+    }
+
+    /// The message in one line that is short enough to read.
+    #[must_use]
+    pub fn in_one_line(&self) -> String {
+        crate::config::bounded::in_one_line(&self.to_string())
+    }
 }
 
 /// Result of this crate.

@@ -6,6 +6,7 @@
 use crate::architecture::layout::{FLOW_PLACES, Layout};
 use crate::flows::{Crossing, Flows};
 use serde::{Deserialize, Serialize};
+use wide::f64x4;
 
 /// Energy stored in the vehicle, relative to fixed references [J].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -75,21 +76,22 @@ impl Ledger {
         stored: &StoredEnergyChange,
         step_s: f64,
     ) -> LedgerEntry {
-        let stores_w: [f64; SIDE_BY_SIDE] =
+        let stores_w = f64x4::new(
             [stored.kinetic_j, stored.chemical_j, stored.polarisation_j, stored.heat_j]
-                .map(|joule| joule / step_s);
+                .map(|joule| joule / step_s),
+        );
         let mut residuals_w = stores_w;
-        let mut scales_w = stores_w.map(f64::abs);
+        let mut scales_w = stores_w.abs();
         let (flows, _) = flows.values().as_chunks::<SIDE_BY_SIDE>();
         let (crossings, _) = self.crossings.as_chunks::<SIDE_BY_SIDE>();
         for group in 0..count.div_ceil(SIDE_BY_SIDE).min(FLOW_PLACES / SIDE_BY_SIDE) {
-            for place in 0..SIDE_BY_SIDE {
-                let crossing_w = flows[group][place] * crossings[group][place];
-                residuals_w[place] += crossing_w;
-                scales_w[place] = scales_w[place].max(crossing_w.abs());
-            }
+            let crossing_w = f64x4::new(flows[group]) * f64x4::new(crossings[group]);
+            residuals_w += crossing_w;
+            // In this order what is no number spoils the residual only.
+            scales_w = crossing_w.abs().fast_max(scales_w);
         }
-        let pair = |values: [f64; SIDE_BY_SIDE], join: fn(f64, f64) -> f64| {
+        let pair = |values: f64x4, join: fn(f64, f64) -> f64| {
+            let values = values.to_array();
             join(join(values[0], values[1]), join(values[2], values[3]))
         };
         LedgerEntry {

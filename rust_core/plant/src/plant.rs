@@ -18,6 +18,7 @@ use crate::components::pid::ResetPid;
 use crate::components::powertrain::{Powertrain, PowertrainFlow};
 use crate::components::pump::PumpState;
 use crate::components::thermal_switch::ThermalSwitches;
+use crate::config::Violation;
 use crate::config::initial::InitialParameters;
 use crate::config::library::Override;
 use crate::config::vehicle::VehicleParameters;
@@ -31,6 +32,7 @@ use crate::network::conditions::{CabinConditions, Conditions, Constants};
 use crate::network::planned::Planned;
 use crate::network::shape::{Given, Shape, each};
 use crate::network::{Forecast, INLET_PLACES, Network};
+use crate::numerics::planned_network::TooLarge;
 use crate::numerics::thermal_network::{MAXIMUM_NODES, NodeValues, heat_gained_j};
 use crate::signals::SignalTable;
 use crate::state::State;
@@ -122,7 +124,7 @@ impl Plant {
     /// Prepares a vehicle.
     ///
     /// # Errors
-    /// The refrigerant is unknown or its table unusable with these parameters.
+    /// The refrigerant is unknown or its table unusable with these parameters, or the thermal network is too large.
     pub fn new(vehicle: VehicleParameters) -> PlantResult<Self> {
         let layout = std::sync::Arc::clone(&vehicle.layout);
         let refrigeration = match (&vehicle.refrigeration, &vehicle.refrigerant) {
@@ -138,7 +140,10 @@ impl Plant {
             ranges: ActuatorRanges::of(&vehicle),
             signals: SignalTable::of(&layout),
             battery: Battery::new(&vehicle.battery),
-            network: network(&vehicle),
+            network: network(&vehicle).map_err(|TooLarge { what, found }| {
+                let allowed = "must be fewer: the architecture has more parts and connections than there are places for";
+                Violation::new(what, found, allowed).in_file(&vehicle.architecture)
+            })?,
             refrigeration,
             exchangers: ExchangerTable::of(&vehicle),
             branches: BranchTable::of(&vehicle),
@@ -155,7 +160,7 @@ impl Plant {
     /// # Errors
     /// See [`VehicleParameters::load`].
     pub fn load(vehicle: &str, overrides: &[Override]) -> PlantResult<Self> {
-        Self::new(VehicleParameters::load(vehicle, overrides)?)
+        Self::new(VehicleParameters::load(vehicle, overrides)?).map_err(|error| error.named_by(vehicle))
     }
 
     /// What follows from the vehicle's architecture.
@@ -169,6 +174,12 @@ impl Plant {
     pub fn with_substeps(mut self, substeps: u32) -> Self {
         self.substeps = substeps.max(1);
         self
+    }
+
+    /// Steps in each second.
+    #[must_use]
+    pub fn substeps_a_second(&self) -> u32 {
+        self.substeps
     }
 
     /// The same vehicle with the network stepped by the executor for any architecture, even where it was compiled.
@@ -309,7 +320,8 @@ impl Plant {
         record: &mut StepRecord,
         tamper: &mut impl FnMut(Stage, &mut Flows),
     ) {
-        let shape = &S::indices(&self.network.indices);
+        let own = self.network.indices.view();
+        let shape = S::indices(&own);
         let compressor_row = shape.compressor_row.map(usize::from);
         let mut period = Period::of(self.ranges.decoded(command, shape.actuators, compressor_row));
         let sight = Sight { vehicle: &self.vehicle, parameters: &self.parameters, shape, disturbance };
@@ -797,7 +809,7 @@ fn enter_series_weights(layout: &Layout, conditions: &mut Conditions<'_>) {
 }
 
 /// Heat capacities and constant conductances of a vehicle's network.
-fn network(vehicle: &VehicleParameters) -> Network {
+fn network(vehicle: &VehicleParameters) -> Result<Network, TooLarge> {
     let layout = &*vehicle.layout;
     let mut capacities_j_k = NodeValues::default();
     let mut constants = Constants::default();

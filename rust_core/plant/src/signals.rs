@@ -2,8 +2,9 @@
 //!
 //! Trajectories, reports and observations are derived from these rows.
 
-use crate::architecture::declaration::MemberKind;
+use crate::architecture::kind::Bounds;
 use crate::architecture::layout::Layout;
+use crate::architecture::ranks as rank;
 use crate::config::ZERO_CELSIUS_K;
 use crate::flows::Flow;
 use crate::numerics::thermal_network::Node;
@@ -108,37 +109,6 @@ fn bounds_of_unit(unit: &str) -> (f64, f64) {
     }
 }
 
-/// What agents see by default comes in this order.
-mod rank {
-    pub const TIME: u8 = 0;
-    pub const SPEED: u8 = 1;
-    pub const TRACTION: u8 = 2;
-    pub const AMBIENT: u8 = 3;
-    pub const CABIN: u8 = 4;
-    pub const BATTERY: u8 = 5;
-    pub const MOTOR: u8 = 6;
-    pub const TRANSMISSION: u8 = 7;
-    pub const STORE: u8 = 8;
-    pub const LOOP: u8 = 9;
-    pub const LOOP_FLOW: u8 = 10;
-    pub const CONDENSING: u8 = 11;
-    pub const EVAPORATING: u8 = 12;
-    pub const DISCHARGE: u8 = 13;
-    pub const COMPRESSOR_SPEED: u8 = 14;
-    pub const CHARGE: u8 = 15;
-    pub const CHARGE_LIMIT: u8 = 16;
-    pub const DISCHARGE_LIMIT: u8 = 17;
-    pub const BATTERY_POWER: u8 = 18;
-    pub const COMPRESSOR_POWER: u8 = 19;
-    pub const HEATER_POWER: u8 = 20;
-    pub const AUXILIARY: u8 = 21;
-    pub const CONDENSER: u8 = 22;
-    pub const EVAPORATOR: u8 = 23;
-    pub const EXCHANGER: u8 = 24;
-    /// Branches of cabins, the battery, front-end exchangers, motor, transmission, plates.
-    pub const BRANCHES: u8 = 25;
-}
-
 /// All signals of a vehicle.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SignalTable {
@@ -188,6 +158,7 @@ impl SignalTable {
         table.add_loops(layout);
         if layout.refrigerates() {
             table.add_refrigeration();
+            table.add_refrigerant_solve();
         }
         table.add_checks();
         table.add_connections(layout);
@@ -213,10 +184,10 @@ impl SignalTable {
         };
         self.rows.extend([
             function("time_s", "s", "time since the start", |v| v.state.time_s)
-                .within(0.0, 3600.0)
+                .within(0.0, 7200.0)
                 .seen(rank::TIME),
             function("speed_m_s", "m/s", "vehicle speed at the end of the step", speed)
-                .within(0.0, 40.0)
+                .within(0.0, 50.0)
                 .seen(rank::SPEED),
             function("ambient_temperature_degc", "degC", "ambient air", |v| {
                 v.disturbance.air.temperature_k - ZERO_CELSIUS_K
@@ -228,31 +199,27 @@ impl SignalTable {
 
     /// Cabins, powertrain, stores, loops.
     fn add_temperatures(&mut self, layout: &Layout) {
-        let row = |node: Node, bounds: Option<(f64, f64, u8)>| {
+        let row = |node: Node, bounds: Option<Bounds>| {
             let named = &layout.nodes[node.index()];
             let name = format!("{}_temperature_degc", named.stem);
             let signal = plain(name, "degC", named.description.clone(), Reader::Temperature(node));
             match bounds {
-                Some((low, high, rank)) => signal.within(low, high).seen(rank),
+                Some(Bounds { low, high, rank }) => signal.within(low, high).seen(rank),
                 None => signal,
             }
         };
         for cabin in &layout.cabins {
-            self.rows.push(row(cabin.air, Some((-40.0, 80.0, rank::CABIN))));
+            let kind = layout.members[cabin.member].kind.data();
+            self.rows.push(row(cabin.air, Some(kind.temperature)));
             self.rows.extend([cabin.exhaust, cabin.soft, cabin.hard].map(|node| row(node, None)));
         }
         for mass in &layout.masses {
-            let bounds = match layout.members[mass.member].kind {
-                MemberKind::Battery => (-40.0, 60.0, rank::BATTERY),
-                MemberKind::Motor => (-40.0, 120.0, rank::MOTOR),
-                MemberKind::Transmission => (-40.0, 120.0, rank::TRANSMISSION),
-                _ => (-40.0, 100.0, rank::STORE),
-            };
-            self.rows.push(row(mass.node, Some(bounds)));
+            let kind = layout.members[mass.member].kind.data();
+            self.rows.push(row(mass.node, Some(kind.temperature)));
         }
         for circuit in &layout.loops {
             let hot = circuit.side == crate::architecture::declaration::Side::Hot;
-            let bounds = (-40.0, if hot { 100.0 } else { 60.0 }, rank::LOOP);
+            let bounds = Bounds::new(-40.0, if hot { 100.0 } else { 60.0 }, rank::LOOP);
             self.rows.extend([circuit.supply, circuit.back].map(|node| row(node, Some(bounds))));
         }
     }
@@ -272,7 +239,7 @@ impl SignalTable {
             .within(0.0, 1.0)
             .seen(rank::CHARGE),
             function("charge_soc", "-", "state of charge by charge alone", |v| {
-                v.plant.battery.state_of_charge(&v.state.battery)
+                v.plant.battery.charge_left(&v.state.battery)
             })
             .within(0.0, 1.0),
             function("battery_voltage_v", "V", "mean terminal voltage", |v| {
@@ -295,7 +262,7 @@ impl SignalTable {
             function("auxiliary_power_w", "W", "12 V load, pumps, blower and fan", |v| {
                 v.recorded(|r| r.flows.sum_w(&v.plant.layout().base_loads))
             })
-            .within(0.0, 1500.0)
+            .within(0.0, 2000.0)
             .seen(rank::AUXILIARY),
         ]);
     }
@@ -334,7 +301,7 @@ impl SignalTable {
             function("evaporating_pressure_bar", "bar", "evaporating pressure", |v| {
                 v.recorded(|r| r.refrigeration.evaporating_pressure_pa * 1e-5)
             })
-            .within(0.0, 10.0)
+            .within(0.0, 16.0)
             .seen(rank::EVAPORATING),
             function("condensing_temperature_degc", "degC", "condensing temperature", |v| {
                 v.recorded(|r| r.refrigeration.condensing_temperature_k - ZERO_CELSIUS_K)
@@ -345,18 +312,35 @@ impl SignalTable {
             function("discharge_temperature_degc", "degC", "gas at the compressor outlet", |v| {
                 v.recorded(|r| r.refrigeration.discharge_temperature_k - ZERO_CELSIUS_K)
             })
-            .within(-40.0, 140.0)
+            .within(-40.0, 160.0)
             .seen(rank::DISCHARGE),
             function("refrigerant_flow_kg_s", "kg/s", "refrigerant mass flow", |v| {
                 v.recorded(|r| r.refrigeration.mass_flow_kg_s)
             })
             .within(0.0, 0.1),
+        ]);
+    }
+
+    /// How the refrigerant solve went, and what came of it.
+    fn add_refrigerant_solve(&mut self) {
+        self.rows.extend([
             function(
                 "refrigeration_status",
                 "-",
                 "how the refrigerant solve ended, position in its list of statuses",
                 |v| v.recorded(|r| f64::from(r.refrigeration.status as u8)),
             ),
+            function(
+                "solver_residual",
+                "-",
+                "largest error that the refrigerant solve left: balances in K, the limit that holds in 1 % of its range",
+                |v| v.recorded(|r| r.refrigeration.residual),
+            )
+            .within(0.0, 1e-6),
+            function("solver_bracketed", "-", "1 where the refrigerant solve was by bracketing, not by Newton", |v| {
+                v.recorded(|r| f64::from(u8::from(r.refrigeration.bracketed)))
+            })
+            .within(0.0, 1.0),
             function("cop", "-", "condenser heat flow over compressor power; 0 at rest", |v| {
                 v.recorded(|r| {
                     let power_w = r.flows[Flow::COMPRESSOR];
@@ -401,7 +385,7 @@ impl SignalTable {
         for row in &layout.flows {
             let signal = plain(row.column.clone(), "W", row.description.clone(), Reader::Flow(row.flow));
             self.rows.push(match seen_flow(layout, row.flow) {
-                Some((low, high, rank)) => signal.within(low, high).seen(rank),
+                Some(Bounds { low, high, rank }) => signal.within(low, high).seen(rank),
                 None => signal,
             });
         }
@@ -409,33 +393,24 @@ impl SignalTable {
 }
 
 /// Bounds and rank of a flow that agents see by default.
-fn seen_flow(layout: &Layout, flow: Flow) -> Option<(f64, f64, u8)> {
+fn seen_flow(layout: &Layout, flow: Flow) -> Option<Bounds> {
     let fixed = match flow {
-        Flow::TRACTION => Some((-100_000.0, 100_000.0, rank::TRACTION)),
-        Flow::BATTERY => Some((-100_000.0, 100_000.0, rank::BATTERY_POWER)),
-        Flow::COMPRESSOR => Some((0.0, 5000.0, rank::COMPRESSOR_POWER)),
-        Flow::CONDENSER => Some((0.0, 15_000.0, rank::CONDENSER)),
-        Flow::EVAPORATOR => Some((0.0, 15_000.0, rank::EVAPORATOR)),
+        Flow::TRACTION => Some(Bounds::new(-200_000.0, 200_000.0, rank::TRACTION)),
+        Flow::BATTERY => Some(Bounds::new(-200_000.0, 200_000.0, rank::BATTERY_POWER)),
+        Flow::COMPRESSOR => Some(Bounds::new(0.0, 8000.0, rank::COMPRESSOR_POWER)),
+        Flow::CONDENSER => Some(Bounds::new(0.0, 20_000.0, rank::CONDENSER)),
+        Flow::EVAPORATOR => Some(Bounds::new(0.0, 20_000.0, rank::EVAPORATOR)),
         _ => None,
     };
     if fixed.is_some() {
         return fixed;
     }
     if layout.heaters.iter().any(|heater| heater.flow == flow) {
-        return Some((0.0, 6000.0, rank::HEATER_POWER));
+        return Some(Bounds::new(0.0, 8000.0, rank::HEATER_POWER));
     }
     if layout.exchangers.iter().any(|exchanger| exchanger.flow == flow) {
-        return Some((0.0, 15_000.0, rank::EXCHANGER));
+        return Some(Bounds::new(0.0, 20_000.0, rank::EXCHANGER));
     }
     let branch = layout.branches.iter().find(|branch| branch.flow == flow)?;
-    let (most_w, place) = match layout.members[branch.member].kind {
-        MemberKind::Cabin => (10_000.0, 0),
-        MemberKind::Battery => (10_000.0, 1),
-        MemberKind::FrontEnd => (15_000.0, 2),
-        MemberKind::Motor => (10_000.0, 3),
-        MemberKind::Transmission => (10_000.0, 4),
-        MemberKind::Plate => (10_000.0, 5),
-        MemberKind::Store => return None,
-    };
-    Some((-most_w, most_w, rank::BRANCHES + place))
+    layout.members[branch.member].kind.data().branch_heat_flow
 }

@@ -17,15 +17,16 @@ use hp_plant::plant::StepRecord;
 use hp_trip::experiment::Experiment;
 use hp_trip::run::Run;
 use std::hint::black_box;
-use workload::{Segment, compressor_on_segments, random_segments};
+use workload::{Car, Executor, Segment, compressor_on_segments, random_segments};
 
 /// Mean step of the paper's scenarios while the compressor runs, and of all scenarios under random actions.
 fn steps(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("plant step");
     group.sample_size(10);
+    let own = Car { executor: Executor::Own, vehicle: None };
     let workloads: [(&str, Vec<Segment>); 2] = [
-        ("HPCU, compressor on", compressor_on_segments(workload::Executor::Own)),
-        ("random actions", random_segments(workload::Executor::Own)),
+        ("HPCU, compressor on", compressor_on_segments(&own)),
+        ("random actions", random_segments(&own, true)),
     ];
     for (name, segments) in workloads {
         group.throughput(Throughput::Elements(segments.iter().map(|segment| segment.steps as u64).sum()));
@@ -114,7 +115,7 @@ fn network(criterion: &mut Criterion) {
     };
     let ports: Vec<_> = layout.links.iter().map(|link| link.ports).collect();
     let known_first: Vec<_> = layout.inlets.iter().rev().map(|inlet| inlet.supply).collect();
-    let network = PlannedNetwork::new(layout.nodes.len(), &ports, &known_first);
+    let network = PlannedNetwork::new(layout.nodes.len(), &ports, &known_first).expect("small");
     let assemble = |now: &Conditions<'_>, step: &mut PlannedStep| {
         let mut links = [LinkState::OPEN; MAXIMUM_LINKS];
         for (place, link) in links.iter_mut().zip(&layout.links) {

@@ -14,6 +14,9 @@ pub struct DriveCycle {
     last_s: usize,
 }
 
+/// Latest time of a cycle [s].
+const LATEST_S: f64 = 1e6;
+
 /// Highest speed that a cycle may ask for [km/h].
 const HIGHEST_SPEED_KM_H: f64 = 300.0;
 
@@ -29,7 +32,7 @@ impl DriveCycle {
     /// Reads `time_s,speed_km_h` rows (comment lines start with `#`) and interpolates to full seconds.
     ///
     /// # Errors
-    /// A row that is not two numbers, times that do not rise from 0, speeds out of range.
+    /// A row that is not two numbers, times that do not rise from 0 or go too far, speeds out of range, less than a second.
     pub fn from_csv(name: &str, text: &str) -> PlantResult<Self> {
         let mut points: Vec<(f64, f64)> = Vec::new();
         let lines =
@@ -47,6 +50,9 @@ impl DriveCycle {
             if !expected {
                 return Err(syntax(format!("time {time} s must be 0 in the first row and rise from there")));
             }
+            if time > LATEST_S {
+                return Err(syntax(format!("time {time} s must be at most {LATEST_S}")));
+            }
             if !(0.0..=HIGHEST_SPEED_KM_H).contains(&speed) {
                 return Err(syntax(format!("speed {speed} km/h must be between 0 and {HIGHEST_SPEED_KM_H}")));
             }
@@ -60,6 +66,12 @@ impl DriveCycle {
         }
         let (times, speeds): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
         let end_s = times[times.len() - 1].floor() as usize;
+        if end_s == 0 {
+            return Err(PlantError::Syntax {
+                file: name.to_owned(),
+                message: format!("a cycle of {} s has no full second", times[times.len() - 1]),
+            });
+        }
         let table = hp_plant::numerics::interpolation::LinearTable::new(&times, &speeds);
         Ok(Self {
             name: name.into(),

@@ -77,9 +77,12 @@ impl Experiment {
         if let Some(vehicle) = vehicle {
             vehicle.clone_into(&mut scenario.vehicle);
         }
+        let named = |error: PlantError| error.named_by(scenario_name);
+        let file = Controller::load(controller.unwrap_or(&scenario.controller), &part("controller"));
+        let file = Arc::new(if controller.is_none() { file.map_err(named)? } else { file? });
         let controller = controller.unwrap_or(&scenario.controller).to_owned();
-        let file = Arc::new(Controller::load(&controller, &part("controller"))?);
-        let plant = Arc::new(Plant::load(&scenario.vehicle, &part("vehicle"))?);
+        let plant = Plant::load(&scenario.vehicle, &part("vehicle"));
+        let plant = Arc::new(if vehicle.is_none() { plant.map_err(named)? } else { plant? });
         let layout = plant.layout();
         scenario.check_members(layout).map_err(|violation| violation.in_file(scenario_name))?;
         for member in file.members() {
@@ -93,7 +96,7 @@ impl Experiment {
         )
         .map_err(|violation| violation.in_file(scenario_name))?;
         Ok(Self {
-            cycle: DriveCycle::load(&scenario.cycle)?,
+            cycle: DriveCycle::load(&scenario.cycle).map_err(named)?,
             controller: controller.into(),
             rules: Arc::new(file.at(scenario.climate.ambient_temperature_degc, &scenario.strategy, layout)),
             controller_file: file,

@@ -1,7 +1,7 @@
 //! heatDemandCommander: requested heat flows, constant or by schedule (paper section 2.5), and connections that
 //! follow a schedule instead of the controller (paper section 4).
 
-use hp_plant::architecture::declaration::among;
+use hp_plant::architecture::flaw::among;
 use hp_plant::architecture::layout::Layout;
 use hp_plant::command::{Demand, MAXIMUM_REQUEST_W};
 use hp_plant::config::{Validate, Violation, check_range};

@@ -2,7 +2,8 @@
 //! lets a source feed the heat pump.
 
 use crate::strategy::Strategy;
-use hp_plant::architecture::declaration::{Level, MemberKind, Side};
+use hp_plant::architecture::declaration::{Level, Side};
+use hp_plant::architecture::kind::Role;
 use hp_plant::architecture::layout::{BranchLayout, BranchSide, ExchangerSide, Layout};
 use hp_plant::command::{Demand, ISOLATED, MAXIMUM_REQUEST_W};
 use hp_plant::numerics::thermal_network::Node;
@@ -132,8 +133,8 @@ impl Roles {
     /// Roles in a layout under a strategy.
     #[must_use]
     pub fn of(layout: &Layout, strategy: &Strategy) -> Self {
-        let of_kind = |kind: MemberKind| {
-            (0..layout.members.len()).filter(move |&member| layout.members[member].kind == kind)
+        let of_role = |role: Role| {
+            (0..layout.members.len()).filter(move |&m| layout.members[m].kind.data().role == Some(role))
         };
         let allowed = |member: usize| strategy.uses(&layout.members[member].name);
         let flow_rows = |side: Side| {
@@ -146,19 +147,19 @@ impl Roles {
         };
         let (sources, always) = sources(layout, &allowed);
         Self {
-            cabins: of_kind(MemberKind::Cabin).filter_map(|member| connectable(layout, member)).collect(),
+            cabins: of_role(Role::Cabin).filter_map(|member| connectable(layout, member)).collect(),
             cabin_air: layout.cabins[0].air,
-            battery: of_kind(MemberKind::Battery).find_map(|member| connectable(layout, member)),
+            battery: of_role(Role::Battery).find_map(|member| connectable(layout, member)),
             battery_node: layout.battery,
             sources,
-            front_ends: of_kind(MemberKind::FrontEnd)
+            front_ends: of_role(Role::FrontEnd)
                 .filter_map(|member| front_end(layout, member, allowed(member)))
                 .collect(),
             always,
-            plates: of_kind(MemberKind::Plate)
+            plates: of_role(Role::Plate)
                 .filter_map(|member| Some((layout.members[member].connection_row?, 1.0)))
                 .collect(),
-            stores: of_kind(MemberKind::Store)
+            stores: of_role(Role::Store)
                 .filter(|&member| allowed(member))
                 .filter_map(|member| store(layout, member))
                 .collect(),
@@ -206,6 +207,20 @@ impl Roles {
         }
     }
 
+    /// Whether there is a heat pump that a strategy allows.
+    #[must_use]
+    pub fn heat_pump(&self, strategy: &Strategy) -> bool {
+        strategy.heat_pump && self.compressor_row.is_some()
+    }
+
+    /// Sets all blowers to a level.
+    #[inline]
+    pub fn blow(&self, level: f64, demand: &mut Demand) {
+        for &row in &self.blower_rows {
+            demand[row] = level;
+        }
+    }
+
     /// Allows heaters to heat, or does not.
     #[inline]
     pub fn allow_heaters(&self, allowed: bool, demand: &mut Demand) {
@@ -226,15 +241,15 @@ fn sources(layout: &Layout, allowed: &impl Fn(usize) -> bool) -> (Options, Optio
         let cooled = |chilled: bool| {
             way(layout, member, |branch| !branch.out_of_loop && tempered(layout, branch) == chilled)
         };
-        match declared.kind {
-            MemberKind::Motor | MemberKind::Transmission => {
+        match declared.kind.data().role {
+            Some(Role::HeatSource) => {
                 if let Some(way) = cooled(true).filter(|_| allowed(member)) {
                     sources.push((row, way.option as f64));
                 } else if let Some(way) = cooled(false) {
                     always.push((row, way.option as f64));
                 }
             }
-            MemberKind::FrontEnd => {
+            Some(Role::FrontEnd) => {
                 let radiator = way(layout, member, |branch| {
                     branch.out_of_loop && layout.loops[branch.circuit].side == Side::Cold
                 });

@@ -9,6 +9,7 @@ use hp_plant::plant::StepRecord;
 use hp_plant::signals::View;
 use hp_plant::state::State;
 use serde::{Deserialize, Serialize};
+use std::convert::Infallible;
 
 /// Why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -32,6 +33,9 @@ impl EndReason {
         }
     }
 }
+
+/// Steps of the plant between two looks at whether to go on: some tens of milliseconds.
+const SUBSTEPS_BETWEEN_CHECKS: u32 = 10_000;
 
 /// Energy that may go unserved before a run ends [J].
 const TOLERATED_UNSERVED_J: f64 = 3600.0;
@@ -135,29 +139,55 @@ impl Experiment {
     /// Runs to the end with the rule-based controller.
     #[must_use]
     pub fn simulate(&self) -> Trajectory {
+        let Ok(trajectory) = self.simulate_while(|| Ok::<(), Infallible>(()));
+        trajectory
+    }
+
+    /// [`Self::simulate`], unless it is given up.
+    ///
+    /// # Errors
+    /// What `go_on` says, which is asked every now and then.
+    pub fn simulate_while<E>(&self, go_on: impl FnMut() -> Result<(), E>) -> Result<Trajectory, E> {
         let columns = self.plant.signals.rows().len();
         let mut values = Vec::with_capacity(columns * (self.cycle.duration_s() + 1));
-        let mut run = self.start();
-        self.look(&run, &mut values);
-        let end = loop {
-            let command = self.rule_based_command(&mut run);
-            let end = self.step(&mut run, &command);
-            self.look(&run, &mut values);
-            if let Some(reason) = end {
-                break reason;
-            }
-        };
-        Trajectory { columns, values, summary: run.summary, end }
+        let (summary, end) = self.drive(go_on, |run| self.look(run, &mut values))?;
+        Ok(Trajectory { columns, values, summary, end })
     }
 
     /// Runs to the end with the rule-based controller, keeping totals only.
     #[must_use]
     pub fn totals(&self) -> (Summary, EndReason) {
+        let Ok(totals) = self.totals_while(|| Ok::<(), Infallible>(()));
+        totals
+    }
+
+    /// [`Self::totals`], unless it is given up.
+    ///
+    /// # Errors
+    /// What `go_on` says, which is asked every now and then.
+    pub fn totals_while<E>(&self, go_on: impl FnMut() -> Result<(), E>) -> Result<(Summary, EndReason), E> {
+        self.drive(go_on, |_| ())
+    }
+
+    /// Drives to the end, looking at the start and after each step.
+    #[inline]
+    fn drive<E>(
+        &self,
+        mut go_on: impl FnMut() -> Result<(), E>,
+        mut look: impl FnMut(&Run),
+    ) -> Result<(Summary, EndReason), E> {
+        let between_checks = (SUBSTEPS_BETWEEN_CHECKS / self.plant.substeps_a_second()).max(1) as usize;
         let mut run = self.start();
+        look(&run);
         loop {
             let command = self.rule_based_command(&mut run);
-            if let Some(reason) = self.step(&mut run, &command) {
-                return (run.summary, reason);
+            let end = self.step(&mut run, &command);
+            look(&run);
+            if let Some(reason) = end {
+                return Ok((run.summary, reason));
+            }
+            if run.steps.is_multiple_of(between_checks) {
+                go_on()?;
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::heat_demand_commander::{ConnectionChange, HeatDemandParameters, check_order};
 use crate::strategy::Strategy;
-use hp_plant::architecture::declaration::among;
+use hp_plant::architecture::flaw::among;
 use hp_plant::architecture::layout::Layout;
 use hp_plant::config::initial::InitialParameters;
 use hp_plant::config::vehicle::built_in_members;

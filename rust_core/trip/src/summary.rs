@@ -126,7 +126,7 @@ impl Summary {
         }
         let battery_k = after.temperatures_k[layout.battery.index()];
         self.final_soc = plant.battery.usable_state_of_charge(&after.battery, battery_k);
-        self.final_charge_soc = plant.battery.state_of_charge(&after.battery);
+        self.final_charge_soc = plant.battery.charge_left(&after.battery);
         self.voltage_v_s += record.battery_voltage_v * CONTROL_PERIOD_S;
         self.worst_residual = self.worst_residual.max(record.ledger.relative());
         self.compressor_starts = f64::from(after.refrigeration.compressor.starts);
@@ -182,14 +182,15 @@ impl Summary {
         self.energies_j[flow]
     }
 
-    /// All totals by name; energies in kWh.
+    /// All totals by name, energies in kWh; none where a quantity does not exist, as energy per distance of a trip of 0 km.
     #[must_use]
-    pub fn values(&self, layout: &Layout) -> Vec<(String, f64)> {
+    pub fn values(&self, layout: &Layout) -> Vec<(String, Option<f64>)> {
         let kwh = |flow: Flow| self.energies_j[flow] / JOULE_PER_KWH;
         let distance_km = self.distance_m / 1000.0;
-        let mut values: Vec<(String, f64)> = Vec::new();
+        let mut values: Vec<(String, Option<f64>)> = Vec::new();
         let mut add = |rows: &[(&str, f64)]| {
-            values.extend(rows.iter().map(|&(name, value)| (name.to_owned(), value)));
+            let there = |value: f64| value.is_finite().then_some(value);
+            values.extend(rows.iter().map(|&(name, value)| (name.to_owned(), there(value))));
         };
         add(&[
             ("energy_kwh", kwh(Flow::BATTERY)),

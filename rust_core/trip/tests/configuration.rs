@@ -107,9 +107,11 @@ fn another_rule_set_drives_by_its_file_s_name_and_warms_the_cabin() {
         assert_eq!(matches!(*experiment.rules, Rules::Thermostat(_)), controller == "thermostat");
         let (summary, end) = experiment.totals();
         assert_eq!(end, EndReason::Arrived);
-        let values: BTreeMap<String, f64> = summary.values(experiment.plant.layout()).into_iter().collect();
-        assert!(values["worst_relative_residual"] < 1e-9 && values["limit_breaches"] == 0.0);
-        values["discomfort_k"]
+        let values: BTreeMap<String, Option<f64>> =
+            summary.values(experiment.plant.layout()).into_iter().collect();
+        let values = |name: &str| values[name].expect("exists");
+        assert!(values("worst_relative_residual") < 1e-9 && values("limit_breaches") == 0.0);
+        values("discomfort_k")
     };
     // Unheated, the cabin would stay about 22 K too cold.
     let (thermostat_k, hpcu_k) = (discomfort_k("thermostat"), discomfort_k("hpcu"));
@@ -125,4 +127,67 @@ fn overrides_reach_the_parameters_of_the_chosen_rules_only() {
     assert!(loaded("compressor_power_w").is_ok());
     let error = loaded("htc_set_point_degc").expect_err("the HPCU's").to_string();
     assert!(error.contains("thermostat") && error.contains("htc_set_point_degc"), "{error}");
+}
+
+#[test]
+fn cycles_out_of_bounds_get_one_clear_error() {
+    let told = |rows: &str| {
+        let text = format!("time_s,speed_km_h\n{rows}\n");
+        DriveCycle::from_csv("mine.csv", &text).expect_err(rows).to_string()
+    };
+    for (rows, part) in [
+        ("0,0\n1e10,3", "line 3: time 10000000000 s must be at most 1000000"),
+        ("0,0\ninf,3", "line 3: time inf s must be at most"),
+        ("0,0\n1e300,3", "line 3: time 1"),
+        ("0,0\nnan,3", "line 3: time NaN s must be 0 in the first row and rise"),
+        ("0,0\n10,inf", "line 3: speed inf km/h must be between 0 and 300"),
+        ("0,0\n10,nan", "line 3: speed NaN km/h"),
+        ("0,0\n0,3", "line 3: time 0 s must"),
+        ("0,0\n0.5,3", "has no full second"),
+    ] {
+        let message = told(rows);
+        assert!(message.starts_with("mine.csv: ") && message.contains(part), "{rows}: {message}");
+    }
+    let longest = DriveCycle::from_csv("mine.csv", "time_s,speed_km_h\n0,0\n1e6,3\n").expect("allowed");
+    assert_eq!(longest.duration_s(), 1_000_000);
+}
+
+#[test]
+fn a_message_names_the_file_asked_for_and_the_one_that_asked() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let write = |name: &str, text: &str| {
+        std::fs::write(folder.path().join(name), text).expect("written");
+        folder.path().join(name).to_str().expect("plain name").to_owned()
+    };
+    let told = |scenario: &str| Experiment::load(scenario, None, &[]).expect_err("refused").to_string();
+    let base = "base = \"jeffs2019/case1-1\"\n";
+    for (line, part) in [
+        ("cycle = \"none.csv\"", "none.csv: "),
+        ("cycle = \"nowhere\"", "unknown drive cycle `nowhere`"),
+        ("vehicle = \"mine.toml\"", "mine.toml: "),
+        ("controller = \"nobody\"", "unknown controller `nobody`"),
+    ] {
+        let scenario = write("trip.toml", &format!("{base}{line}\n"));
+        let message = told(&scenario);
+        assert!(message.contains(part) && message.ends_with(&format!("(named by {scenario})")), "{message}");
+    }
+    let mine = write("mine.toml", "base = \"jeffs2019\"\nrefrigerant = \"none.csv\"\n");
+    let scenario = write("trip.toml", &format!("{base}vehicle = \"mine.toml\"\n"));
+    let message = told(&scenario);
+    assert!(message.contains("none.csv") && message.ends_with(&format!("(named by {mine})")), "{message}");
+    let own = write("own.toml", "base = \"own.toml\"\n");
+    let message = told(&own);
+    assert!(message.contains("too long or closed") && message.matches("named by").count() == 1, "{message}");
+}
+
+#[test]
+fn what_a_trip_of_0_km_does_not_have_is_none() {
+    let mut experiment = Experiment::load("jeffs2019/case1-1", None, &[]).expect("built in");
+    experiment.cycle =
+        DriveCycle::from_csv("standing.csv", "time_s,speed_km_h\n0,0\n60,0\n").expect("a cycle");
+    let (summary, _) = experiment.totals();
+    let values: BTreeMap<String, Option<f64>> =
+        summary.values(experiment.plant.layout()).into_iter().collect();
+    assert_eq!((values["distance_km"], values["energy_kwh_per_100_km"]), (Some(0.0), None));
+    assert!(values["energy_kwh"].is_some_and(|energy_kwh| energy_kwh > 0.0));
 }

@@ -1,6 +1,6 @@
 //! A layout as positions only: what a step looks up, as constants for the built-in architectures.
 
-use super::declaration::{Level, MemberKind};
+use super::declaration::Level;
 use super::flows::Flow;
 use super::layout::{BranchSide, CabinLayout, ExchangerSide, HeaterTarget, Layout};
 use super::wiring::{HeatSource, Inlet, Link};
@@ -178,7 +178,11 @@ impl OwnedIndices {
     /// Positions of a layout.
     #[must_use]
     pub fn of(layout: &Layout) -> Self {
-        let stores = layout.members.iter().filter(|member| member.kind == MemberKind::Store).count();
+        let stores = layout
+            .masses
+            .iter()
+            .filter(|mass| layout.members[mass.member].kind.data().read.is_some())
+            .count();
         Self {
             nodes: layout.nodes.len(),
             loops: (0..layout.loops.len()).map(|circuit| loop_indices(layout, circuit)).collect(),

@@ -5,7 +5,9 @@
 
 use crate::architecture::declaration::MemberKind;
 use crate::architecture::indices::{BranchIndices, Indices};
-use crate::architecture::layout::{BRANCH_PLACES, BranchSide, CABIN_PLACES, FRONT_END_PLACES, LOOP_PLACES};
+use crate::architecture::layout::{
+    BRANCH_PLACES, BranchSide, CABIN_PLACES, FRONT_END_PLACES, LOOP_PLACES, MassLayout,
+};
 use crate::command::Demand;
 use crate::components::cabin::Ventilation;
 use crate::components::coolant_loop::ClosedBranches;
@@ -273,8 +275,8 @@ fn exchanger(vehicle: &VehicleParameters, place: usize) -> (f64, f64) {
             }
         }
         BranchSide::Mass(_) => {
-            let is_store = |member: &usize| layout.members[*member].kind == MemberKind::Store;
-            let store = (0..layout.members.len()).filter(is_store).position(|member| member == branch.member);
+            let passive = |mass: &&MassLayout| layout.members[mass.member].kind.data().read.is_some();
+            let store = layout.masses.iter().filter(passive).position(|mass| mass.member == branch.member);
             let ua_w_k = match layout.members[branch.member].kind {
                 MemberKind::Battery => vehicle.battery.coolant_ua_w_k,
                 MemberKind::Motor => vehicle.motor.coolant_ua_w_k,

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::refrigeration_cycle::RefrigerationCycle;
 pub use super::refrigeration_solver::{Limit, SupplyLimit, WarmStart};
-use super::refrigeration_solver::{Running, Scales, Solver};
+use super::refrigeration_solver::{Running, Scales, Solver, UNSOLVED};
 use crate::components::compressor::CompressorState;
 use crate::components::refrigerant_exchanger::{CondenserStreams, EvaporatorStreams};
 
@@ -97,6 +97,8 @@ pub enum LoopStatus {
     CoolantLimited,
     /// At the highest discharge temperature.
     DischargeLimited,
+    /// At rest: no state was found that satisfies all equations.
+    NotConverged,
 }
 
 /// The loop during one step.
@@ -138,6 +140,9 @@ pub struct LoopResult {
     pub iterations: u32,
     /// Newton gave up and bracketing over speed solved.
     pub bracketed: bool,
+    /// Largest error of the equations as they were left: both balances [K], and the margin of the limit in its scaled unit; 0
+    /// where nothing was solved.
+    pub residual: f64,
 }
 
 /// A solution with the machine running, as what changes least from one second to the next.
@@ -221,7 +226,7 @@ impl LoopResult {
     /// The compressor turns.
     #[must_use]
     pub fn running(&self) -> bool {
-        !matches!(self.status, LoopStatus::Off | LoopStatus::NoLift)
+        !matches!(self.status, LoopStatus::Off | LoopStatus::NoLift | LoopStatus::NotConverged)
     }
 }
 
@@ -312,6 +317,10 @@ impl RefrigerationCycle {
         };
         let mut result = match solver.solve(warm_start) {
             Err(limit) => self.at_rest(boundary, LoopStatus::Off, limit),
+            Ok(running) if running.residual.is_nan() || running.residual > UNSOLVED => LoopResult {
+                residual: running.residual,
+                ..self.at_rest(boundary, LoopStatus::NotConverged, running.limit)
+            },
             Ok(running) if running.point.pressure_ratio() < parameters.minimum_pressure_ratio => {
                 self.at_rest(boundary, LoopStatus::NoLift, running.limit)
             }
@@ -355,7 +364,7 @@ impl RefrigerationCycle {
     }
 
     fn running_result(&self, running: &Running) -> LoopResult {
-        let Running { point, limit, discharge_k } = *running;
+        let Running { point, limit, discharge_k, residual } = *running;
         LoopResult {
             status: match limit {
                 Limit::Power | Limit::CoolantFlow => LoopStatus::Converged,
@@ -383,6 +392,7 @@ impl RefrigerationCycle {
             subcooling_k: point.subcooling_k,
             iterations: 0,
             bracketed: false,
+            residual,
         }
     }
 
@@ -408,6 +418,7 @@ impl RefrigerationCycle {
             subcooling_k: 0.0,
             iterations: 0,
             bracketed: false,
+            residual: 0.0,
         }
     }
 }

@@ -21,6 +21,8 @@ const CHORD_ERROR: f64 = 0.3;
 const CHORD_SHARE: f64 = 0.03;
 /// How far a limit may be missed, in its scaled unit (see [`Scales`]; 1 K of discharge temperature).
 const LIMIT_TOLERANCE: f64 = 1e-6;
+/// Residual above which a problem counts as not solved; bracketing reaches what round-off lets it.
+pub(super) const UNSOLVED: f64 = 1e-5;
 const MAX_NEWTON_ITERATIONS: u32 = 25;
 /// Longest Newton step of a temperature [K].
 const MAX_TEMPERATURE_STEP_K: f64 = 10.0;
@@ -144,6 +146,8 @@ pub(super) struct Running {
     pub limit: Limit,
     /// Gas temperature at the compressor outlet [K].
     pub discharge_k: f64,
+    /// Largest error of all equations: both balances [K], and the margin of the limit in its scaled unit.
+    pub residual: f64,
 }
 
 /// A solution, or the limit that keeps the machine off.
@@ -210,7 +214,9 @@ impl Solver<'_> {
     }
 
     fn running(&self, point: CyclePoint<f64>, limit: Limit) -> Running {
-        Running { discharge_k: self.cycle.discharge_k(&point), point, limit }
+        let margin = self.margin(limit, &point);
+        let residual = largest([point.cold_residual_k, point.hot_residual_k, margin]);
+        Running { discharge_k: self.cycle.discharge_k(&point), point, limit, residual }
     }
 
     /// The most exceeded of the limits, with its margin.

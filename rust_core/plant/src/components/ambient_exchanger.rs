@@ -1,7 +1,35 @@
 //! Front-end exchanger: heat source in the chiller loop, radiator in the HTC.
 
+use crate::architecture::builder::Builder;
+use crate::architecture::declaration::MemberKind;
+use crate::architecture::kind::{Bounds, ComponentKind, Meets, Role};
+use crate::architecture::layout::FrontEndLayout;
 use crate::config::Celsius;
 use crate::parameters;
+
+/// What an architecture has to know of front-end exchangers.
+pub const KIND: ComponentKind = ComponentKind {
+    word: "front-end",
+    meets: Meets::AmbientAir,
+    role: Some(Role::FrontEnd),
+    branch_heat_flow: Some(Bounds::branch(30_000.0, 2)),
+    add_nodes: add_place,
+    ..ComponentKind::MASS
+};
+
+/// Its place in the air: alone, or behind another one. It has no node.
+fn add_place(to: &mut Builder<'_>, member: usize) {
+    let declaration = to.declaration;
+    let name = &declaration.members[member].name;
+    let stream = declaration.air_streams.iter().find(|stream| stream.through.contains(name));
+    let behind = stream.and_then(|stream| {
+        let place = stream.through.iter().position(|other| other == name)?;
+        let before = declaration.member(&stream.through[place.checked_sub(1)?])?;
+        declaration.of_kind(MemberKind::FrontEnd).position(|other| other == before)
+    });
+    let stream = stream.map(|stream| stream.name.clone());
+    to.layout.front_ends.push(FrontEndLayout { member, stream, behind });
+}
 
 parameters! {
     /// Front-end exchanger with ambient air: heat source in the chiller loop, radiator in the HTC.

@@ -5,11 +5,25 @@
 
 use super::battery_tables::{CircuitTable, OpenCircuitVoltageTable, UsableCapacityTable};
 use super::underbody_plate::PlateParameters;
+use crate::architecture::flows::Flow;
+use crate::architecture::kind::{Bounds, ComponentKind, Role};
+use crate::architecture::ranks;
 use crate::config::ZERO_CELSIUS_K;
 use crate::numerics::elementary;
 use crate::numerics::interpolation::{BilinearTable, LinearTable, Segment};
 use crate::parameters;
 use serde::{Deserialize, Serialize};
+
+/// What an architecture has to know of the traction battery.
+pub const KIND: ComponentKind = ComponentKind {
+    word: "battery",
+    role: Some(Role::Battery),
+    section: Some("battery"),
+    loss: Some(Flow::BATTERY_LOSS),
+    temperature: Bounds::new(-40.0, 60.0, ranks::BATTERY),
+    branch_heat_flow: Some(Bounds::branch(10_000.0, 1)),
+    ..ComponentKind::POWERTRAIN
+};
 
 /// Rounds of the fixed point for the mean open-circuit voltage; one suffices within a table segment.
 const VOLTAGE_ROUNDS: usize = 12;
@@ -197,12 +211,19 @@ impl Battery {
         1.0 - state.charge_drawn_c * self.per_cell_capacity_1_c
     }
 
-    /// State of charge of equation (6): charge drawn since the start over the usable capacity [-].
+    /// State of charge of equation (6): charge drawn since the start over the usable capacity; 0 where the last step took more
+    /// than was left [-].
     #[must_use]
     pub fn usable_state_of_charge(&self, state: &BatteryState, temperature_k: f64) -> f64 {
         let initial = 1.0 - state.initial_charge_drawn_c * self.per_cell_capacity_1_c;
         let drawn = (state.charge_drawn_c - state.initial_charge_drawn_c) * self.per_cell_capacity_1_c;
-        initial - drawn / self.usable_capacity.at(temperature_k)
+        not_negative(initial - drawn / self.usable_capacity.at(temperature_k))
+    }
+
+    /// State of charge by charge, as it is told: 0 where the last step took more than was left [-].
+    #[must_use]
+    pub fn charge_left(&self, state: &BatteryState) -> f64 {
+        not_negative(self.state_of_charge(state))
     }
 
     /// Energy stored in all RC pairs [J].
@@ -245,6 +266,11 @@ impl Battery {
             source_ohm: series_ohm + polarisation_ohm * (1.0 - mean_decay) + discharge_ohm,
         }
     }
+}
+
+/// Not `max`, which would hide what is no number.
+fn not_negative(value: f64) -> f64 {
+    if value < 0.0 { 0.0 } else { value }
 }
 
 /// One string over one step; solves current for power.

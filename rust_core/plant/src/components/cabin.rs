@@ -1,8 +1,131 @@
 //! Cabin: ventilation, panels and cores (paper section 2.2).
 
+use crate::architecture::builder::Builder;
+use crate::architecture::flows::{Crossing, Flow};
+use crate::architecture::kind::{Bounds, ComponentKind, Count, Key, Meets, Role};
+use crate::architecture::layout::{CabinLayout, LoopLayout};
+use crate::architecture::ranks;
+use crate::architecture::rows::{ActuatorRow, Purpose};
+use crate::architecture::wiring::{HeatSource, Law};
 use crate::config::Celsius;
 use crate::media::air::SPECIFIC_HEAT_J_KG_K;
+use crate::numerics::graph::LinkPorts;
 use crate::parameters;
+
+/// What an architecture has to know of cabins.
+pub const KIND: ComponentKind = ComponentKind {
+    word: "cabin",
+    count: Count::AtLeastOnce,
+    meets: Meets::SupplyAir,
+    role: Some(Role::Cabin),
+    keys: &[Key::Comfort, Key::ExhaustRecovery],
+    needs_link: false,
+    temperature: Bounds::new(-40.0, 80.0, ranks::CABIN),
+    branch_heat_flow: Some(Bounds::branch(10_000.0, 0)),
+    add_nodes,
+    add_loads,
+    add_gains,
+    add_loop_links,
+    add_links,
+    add_sources,
+    add_levels,
+    ..ComponentKind::MASS
+};
+
+/// Two air volumes and furnishings.
+fn add_nodes(to: &mut Builder<'_>, member: usize) {
+    let declared = &to.declaration.members[member];
+    let prefix = to.prefix(member);
+    let text = to.layout.members[member].label.clone();
+    let air = to.node(declared.name.clone(), format!("{text}, large air volume"));
+    let exhaust = to.node(format!("{prefix}exhaust"), format!("{text}, small exhaust volume"));
+    let soft = to.node(format!("{prefix}soft_furnishings"), format!("{text}: seats, carpet"));
+    let hard = to.node(format!("{prefix}hard_furnishings"), format!("{text}: dashboard, glass"));
+    to.layout.members[member].node = Some(air);
+    to.layout.cabins.push(CabinLayout {
+        member,
+        air,
+        exhaust,
+        soft,
+        hard,
+        recovery: declared.exhaust_recovery.as_ref().and_then(|name| to.declaration.circuit(name)),
+        heater: None,
+        cooler: None,
+        blower_flow: Flow::AUXILIARY,
+        solar_flow: Flow::AUXILIARY,
+        occupants_flow: Flow::AUXILIARY,
+        recirculation_row: 0,
+        blower_row: 0,
+    });
+}
+
+fn add_loads(to: &mut Builder<'_>, member: usize) {
+    let column = format!("{}blower_power_w", to.prefix(member));
+    let flow = to.flow(column, "Blower; warms the cabin air.", Crossing::Inside);
+    to.cabin(member).blower_flow = flow;
+    to.layout.base_loads.push(flow);
+}
+
+fn add_gains(to: &mut Builder<'_>, member: usize) {
+    let prefix = to.prefix(member);
+    let column = format!("{prefix}solar_heat_flow_w");
+    to.cabin(member).solar_flow = to.flow(column, "Solar heat into the cabin.", Crossing::Enters);
+    let column = format!("{prefix}occupant_heat_flow_w");
+    to.cabin(member).occupants_flow =
+        to.flow(column, "Heat of the occupants into the cabin.", Crossing::Enters);
+}
+
+/// The exhaust enters at cabin temperature and meets whichever is warmer, ambient (only heat above ambient is "exhaust
+/// heat") or the supply of its loop.
+fn add_loop_links(to: &mut Builder<'_>, member: usize) {
+    let CabinLayout { air, exhaust, recovery, .. } = *to.cabin(member);
+    let Some(circuit) = recovery else { return };
+    let LoopLayout { label, supply, back, .. } = to.layout.loops[circuit].clone();
+    let place = to.cabin_place(member) as u8;
+    let column = format!("{}exhaust_recovery_heat_flow_w", to.prefix(member));
+    let flow = to.flow(column, format!("Exhaust air to {label}."), Crossing::Inside);
+    let ports = LinkPorts { loses: Some(exhaust), gains: Some(back), hot: Some(air), cold: None };
+    to.link(ports, Law::RecoveryFromAmbient(place), flow);
+    to.link(LinkPorts { cold: Some(supply), ..ports }, Law::RecoveryFromLoop(place), flow);
+}
+
+fn add_links(to: &mut Builder<'_>, member: usize) {
+    let CabinLayout { air, exhaust, soft, hard, .. } = *to.cabin(member);
+    let (prefix, place) = (to.prefix(member), to.cabin_place(member) as u8);
+    let name = to.layout.members[member].name.clone();
+    let column = format!("{name}_panel_heat_flow_w");
+    let flow = to.flow(column, "Cabin through its panels to ambient.", Crossing::Leaves);
+    to.link(LinkPorts::to_surroundings(air), Law::Panel(place), flow);
+    for (part, node, law) in [("soft", soft, Law::Soft(place)), ("hard", hard, Law::Hard(place))] {
+        let column = format!("{prefix}{part}_furnishings_heat_flow_w");
+        let flow = to.flow(column, format!("Cabin air to {part} furnishings."), Crossing::Inside);
+        to.link(LinkPorts::between(air, node), law, flow);
+    }
+    let text = "Cabin air into the small exhaust volume, relative to ambient.";
+    let flow = to.flow(format!("{name}_exhaust_heat_flow_w"), text, Crossing::Inside);
+    let ports = LinkPorts { gains: Some(exhaust), ..LinkPorts::to_surroundings(air) };
+    to.link(ports, Law::Exhaust(place), flow);
+    let text = "Exhaust air leaving the vehicle, relative to ambient.";
+    let flow = to.flow(format!("{prefix}exhaust_ambient_heat_flow_w"), text, Crossing::Leaves);
+    to.link(LinkPorts::to_surroundings(exhaust), Law::Exhaust(place), flow);
+}
+
+fn add_sources(to: &mut Builder<'_>, member: usize) {
+    let CabinLayout { air, blower_flow, solar_flow, occupants_flow, .. } = *to.cabin(member);
+    for flow in [blower_flow, solar_flow, occupants_flow] {
+        to.layout.sources.push(HeatSource { flow, node: air, out: false });
+    }
+}
+
+fn add_levels(to: &mut Builder<'_>, member: usize) {
+    let (prefix, cabin) = (to.prefix(member), to.cabin_place(member));
+    let text = "recirculated share of the supply air".to_owned();
+    let (name, purpose) = (format!("{prefix}recirculation"), Purpose::Recirculation(cabin));
+    to.cabin(member).recirculation_row = to.row(ActuatorRow::level(name, "-", purpose, text));
+    let text = "blower level between smallest and largest air flow".to_owned();
+    let (name, purpose) = (format!("{prefix}blower_level"), Purpose::Blower(cabin));
+    to.cabin(member).blower_row = to.row(ActuatorRow::level(name, "-", purpose, text));
+}
 
 parameters! {
     /// Cabin: large and small air volume, soft and hard furnishings, panels, ventilation.

@@ -1,7 +1,18 @@
 //! Liquid-to-liquid plate between two coolant loops, in counterflow.
 
 use super::heat_exchanger::counterflow_conductance_w_k;
+use crate::architecture::kind::{Bounds, ComponentKind, Key, Meets, Role};
 use crate::parameters;
+
+/// What an architecture has to know of plates.
+pub const KIND: ComponentKind = ComponentKind {
+    word: "plate",
+    meets: Meets::OtherLoop,
+    role: Some(Role::Plate),
+    keys: &[Key::From],
+    branch_heat_flow: Some(Bounds::branch(10_000.0, 5)),
+    ..ComponentKind::MASS
+};
 
 parameters! {
     /// Plate between two loops.

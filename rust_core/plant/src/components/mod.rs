@@ -1,4 +1,5 @@
-//! Physical components, one a file: parameters, state and equations.
+//! Physical components, one a file: parameters, state and equations, and for what an architecture can name, what it has to know
+//! of that kind.
 
 pub mod air_stream;
 pub mod ambient_exchanger;
@@ -19,6 +20,27 @@ pub mod powertrain;
 pub mod pump;
 pub mod refrigerant_exchanger;
 pub mod store;
+pub mod thermal_mass;
 pub mod thermal_switch;
 pub mod transmission;
 pub mod underbody_plate;
+
+use crate::architecture::kind::component_kinds;
+
+// What an architecture's members can be, in the order of their nodes: a row for each file with a `KIND`.
+component_kinds! {
+    /// The traction battery; there is one.
+    Battery => battery,
+    /// Motor and inverter; there is one.
+    Motor => motor,
+    /// Transmission and driveline; there is one.
+    Transmission => transmission,
+    /// Cabin: air, exhaust volume, soft and hard furnishings.
+    Cabin => cabin,
+    /// Sensible heat store.
+    Store => store,
+    /// Exchanger with ambient air at the front end.
+    FrontEnd => ambient_exchanger,
+    /// Liquid-to-liquid plate between two loops.
+    Plate => liquid_plate,
+}

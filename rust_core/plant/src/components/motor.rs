@@ -1,6 +1,19 @@
 //! Motor and inverter, treated as one.
 
+use crate::architecture::flows::Flow;
+use crate::architecture::kind::{Bounds, ComponentKind, Role};
+use crate::architecture::ranks;
 use crate::parameters;
+
+/// What an architecture has to know of motor and inverter.
+pub const KIND: ComponentKind = ComponentKind {
+    word: "motor",
+    role: Some(Role::HeatSource),
+    loss: Some(Flow::MOTOR_LOSS),
+    temperature: Bounds::new(-40.0, 120.0, ranks::MOTOR),
+    branch_heat_flow: Some(Bounds::branch(10_000.0, 3)),
+    ..ComponentKind::POWERTRAIN
+};
 
 /// Below this speed the vehicle counts as standing [m/s].
 pub const STANDSTILL_SPEED_M_S: f64 = 0.05;

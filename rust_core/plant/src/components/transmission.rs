@@ -1,8 +1,21 @@
 //! Transmission and driveline.
 
+use crate::architecture::flows::Flow;
+use crate::architecture::kind::{Bounds, ComponentKind, Role};
+use crate::architecture::ranks;
 use crate::config::Celsius;
 use crate::numerics::elementary;
 use crate::parameters;
+
+/// What an architecture has to know of the transmission.
+pub const KIND: ComponentKind = ComponentKind {
+    word: "transmission",
+    role: Some(Role::HeatSource),
+    loss: Some(Flow::TRANSMISSION_LOSS),
+    temperature: Bounds::new(-40.0, 120.0, ranks::TRANSMISSION),
+    branch_heat_flow: Some(Bounds::branch(10_000.0, 4)),
+    ..ComponentKind::POWERTRAIN
+};
 
 parameters! {
     /// Transmission and driveline: losses that depend on the oil temperature, one thermal mass.

@@ -8,6 +8,9 @@ use std::collections::BTreeMap;
 /// What a key that gives a member's temperature ends with.
 const TEMPERATURE_ENDING: &str = "_temperature_degc";
 
+/// Temperatures that a member may start with [degC].
+pub const MEMBER_RANGE_DEGC: (f64, f64) = (-50.0, 100.0);
+
 /// State at the start; what is not given has the soak temperature.
 ///
 /// In a file each member's temperature has a key of its own: `battery_temperature_degc`; that of a cabin counts for its air
@@ -96,7 +99,12 @@ impl Validate for InitialParameters {
         check_range("soak_temperature_degc", self.soak_temperature_degc, -50.0, 70.0)?;
         check_range("state_of_charge_pct", self.state_of_charge_pct, 0.0, 100.0)?;
         for (member, &value) in &self.members {
-            check_range(&format!("{member}{TEMPERATURE_ENDING}"), value, -50.0, 100.0)?;
+            check_range(
+                &format!("{member}{TEMPERATURE_ENDING}"),
+                value,
+                MEMBER_RANGE_DEGC.0,
+                MEMBER_RANGE_DEGC.1,
+            )?;
         }
         Ok(())
     }

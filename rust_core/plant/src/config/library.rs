@@ -4,7 +4,7 @@
 //! values it replaces. A relative path inside a file counts from the folder of that file, any other one from the working
 //! folder. Overrides replace single values by dotted key.
 
-use super::Validate;
+use super::{Validate, bounded, deserialized, read_value};
 use crate::error::{PlantError, PlantResult};
 use serde::de::DeserializeOwned;
 use std::path::Path;
@@ -49,6 +49,11 @@ impl Kind {
         !self.holds(name) && Path::new(name).extension().is_some_and(|found| found == self.ending)
     }
 
+    /// Bytes that a file on disk may have.
+    fn largest_bytes(&self) -> u64 {
+        if self.ending == "toml" { bounded::LARGEST_TOML_BYTES } else { bounded::LARGEST_TABLE_BYTES }
+    }
+
     /// Name or path, seen from the working folder, of what `file` of this kind names.
     fn named_by(&self, file: &str, kind: &Self, named: &str) -> String {
         match Path::new(file).parent() {
@@ -75,8 +80,8 @@ pub fn text(kind: Kind, name: &str) -> PlantResult<String> {
         return Ok((*text).to_owned());
     }
     if kind.on_disk(name) {
-        return std::fs::read_to_string(name)
-            .map_err(|error| PlantError::Syntax { file: name.to_owned(), message: error.to_string() });
+        return bounded::text(name, kind.largest_bytes())
+            .map_err(|message| PlantError::Syntax { file: name.to_owned(), message });
     }
     Err(PlantError::Unknown {
         kind: kind.word,
@@ -110,7 +115,7 @@ impl Override {
 }
 
 fn parse_value(text: &str) -> Value {
-    let parsed = toml::from_str::<Table>(&format!("value = {text}")).ok();
+    let parsed = bounded::toml(&format!("value = {text}")).ok();
     parsed.and_then(|mut table| table.remove("value")).unwrap_or_else(|| Value::String(text.to_owned()))
 }
 
@@ -158,10 +163,7 @@ pub fn read_section<T: DeserializeOwned + Validate>(
     table: &mut Table,
     section: &str,
 ) -> PlantResult<T> {
-    let value = take(name, table, section)?;
-    let parameters: T = deserialized(name, section, value)?;
-    parameters.validate().map_err(|violation| violation.within(section).in_file(name))?;
-    Ok(parameters)
+    read_value(name, section, take(name, table, section)?)
 }
 
 /// Takes a value out of a file's table.
@@ -174,32 +176,12 @@ pub fn take(name: &str, table: &mut Table, key: &str) -> PlantResult<Value> {
         .ok_or_else(|| PlantError::Syntax { file: name.to_owned(), message: format!("`{key}` is missing") })
 }
 
-/// A value as a type, its checks still to come; `section` is where it stands.
-///
-/// # Errors
-/// A key is missing or unknown, or a value is of the wrong type.
-pub fn deserialized<T: DeserializeOwned>(name: &str, section: &str, value: Value) -> PlantResult<T> {
-    serde_path_to_error::deserialize(value).map_err(|error| {
-        let path = error.path().to_string();
-        let inner = error.into_inner().message().to_owned();
-        let place = match (section, path.as_str()) {
-            ("", ".") => String::new(),
-            ("", path) => format!("`{path}`: "),
-            (section, ".") => format!("`{section}`: "),
-            (section, path) => format!("`{section}.{path}`: "),
-        };
-        PlantError::Syntax { file: name.to_owned(), message: format!("{place}{}", inner.trim()) }
-    })
-}
-
 /// What a file itself gives, that of its base left out, with the overrides.
 ///
 /// # Errors
 /// There is no such file, or it is not TOML.
 pub fn own_table(kind: Kind, name: &str, overrides: &[Override]) -> PlantResult<Table> {
-    let syntax =
-        |error: toml::de::Error| PlantError::Syntax { file: name.to_owned(), message: error.to_string() };
-    let mut table: Table = toml::from_str(&text(kind, name)?).map_err(syntax)?;
+    let mut table = parsed(kind, name)?;
     for change in overrides {
         let mut value = change.value.clone();
         for part in change.key.rsplit('.') {
@@ -213,12 +195,17 @@ pub fn own_table(kind: Kind, name: &str, overrides: &[Override]) -> PlantResult<
     Ok(table)
 }
 
+/// A file's own TOML.
+fn parsed(kind: Kind, name: &str) -> PlantResult<Table> {
+    bounded::toml(&text(kind, name)?).map_err(|message| PlantError::Syntax { file: name.to_owned(), message })
+}
+
 fn merged(kind: Kind, name: &str, depth: usize) -> PlantResult<Table> {
     let syntax = |message: String| PlantError::Syntax { file: name.to_owned(), message };
     if depth > LONGEST_BASE_CHAIN {
         return Err(syntax("the chain of `base` files is too long or closed".into()));
     }
-    let mut table: Table = toml::from_str(&text(kind, name)?).map_err(|error| syntax(error.to_string()))?;
+    let mut table = parsed(kind, name)?;
     for Reference { path, kind: other } in kind.references {
         if let [section, rest @ ..] = path
             && let Some(value) = table.get_mut(*section)
@@ -229,7 +216,8 @@ fn merged(kind: Kind, name: &str, depth: usize) -> PlantResult<Table> {
     match table.remove("base") {
         None => Ok(table),
         Some(Value::String(base)) => {
-            let mut whole = merged(kind, &kind.named_by(name, &kind, &base), depth + 1)?;
+            let base = kind.named_by(name, &kind, &base);
+            let mut whole = merged(kind, &base, depth + 1).map_err(|error| error.named_by(name))?;
             merge(&mut whole, table);
             Ok(whole)
         }

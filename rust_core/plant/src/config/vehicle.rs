@@ -2,8 +2,9 @@
 
 use super::kinds::{ARCHITECTURE, VEHICLE};
 use super::library::{self, Override};
-use super::{Validate, Violation, check_range};
-use crate::architecture::declaration::{Declaration, Flaw, MemberKind, VEHICLE_SECTIONS, among};
+use super::{Validate, Violation, check_range, deserialized};
+use crate::architecture::declaration::{Declaration, MemberKind, VEHICLE_SECTIONS};
+use crate::architecture::flaw::{Flaw, among};
 use crate::architecture::flows::FlowRow;
 use crate::architecture::layout::{BranchSide, ExchangerSide, Layout};
 use crate::circuits::refrigeration_cycle::RefrigerationParameters;
@@ -18,7 +19,7 @@ use crate::components::liquid_plate::LiquidPlateParameters;
 use crate::components::motor::MotorParameters;
 use crate::components::pid::PidParameters;
 use crate::components::powertrain::RegenerationParameters;
-use crate::components::store::StoreParameters;
+use crate::components::thermal_mass::ThermalMass;
 use crate::components::thermal_switch::SwitchParameters;
 use crate::components::transmission::TransmissionParameters;
 use crate::error::{PlantError, PlantResult};
@@ -60,8 +61,8 @@ pub struct VehicleParameters {
     pub loops: Vec<LoopParameters>,
     /// Heaters.
     pub heaters: Vec<HeaterParameters>,
-    /// Stores, in the order of their masses.
-    pub stores: Vec<StoreParameters>,
+    /// Stores and whatever else is a mass without heat of its own, in the order of their masses.
+    pub stores: Vec<ThermalMass>,
     /// Front-end exchangers.
     pub front_ends: Vec<AmbientExchangerParameters>,
     /// Air that a front-end exchanger shares with others.
@@ -106,7 +107,7 @@ parameters! {
 /// There is none, or it has a flaw.
 pub fn architecture(name: &str) -> PlantResult<Layout> {
     let table = library::table(ARCHITECTURE, name, &[])?;
-    let declaration: Declaration = library::deserialized(name, "", Value::Table(table))?;
+    let declaration: Declaration = deserialized(name, "", Value::Table(table))?;
     let layout = Layout::of(&declaration).map_err(|flaw| in_file(flaw, name))?;
     check_names(&layout).map_err(|flaw| in_file(flaw, name))?;
     Ok(layout)
@@ -181,7 +182,7 @@ impl Reader<'_> {
         let description = self.text("description")?;
         let architecture_name = match self.table.remove("architecture") {
             None => DEFAULT_ARCHITECTURE.to_owned(),
-            Some(value) => library::deserialized(self.file, "architecture", value)?,
+            Some(value) => deserialized(self.file, "architecture", value)?,
         };
         let layout = self.architecture(&architecture_name)?;
         let cabins = self.cabins(&layout)?;
@@ -203,7 +204,7 @@ impl Reader<'_> {
                 .iter()
                 .map(|heater| self.section(&heater.name))
                 .collect::<PlantResult<_>>()?,
-            stores: self.each(&layout, MemberKind::Store)?,
+            stores: self.passive_masses(&layout)?,
             front_ends: self.each(&layout, MemberKind::FrontEnd)?,
             air_streams: self.air_streams(&layout)?,
             plates: self.plates(&layout)?,
@@ -224,13 +225,13 @@ impl Reader<'_> {
                     format!("{}, or be the path of a .toml file", among(&library::names(ARCHITECTURE), name));
                 Violation::new("architecture", format!("`{name}`"), allowed).in_file(self.file)
             }
-            error => error,
+            error => error.named_by(self.file),
         })
     }
 
     fn text(&mut self, key: &str) -> PlantResult<String> {
         let value = library::take(self.file, &mut self.table, key)?;
-        library::deserialized(self.file, key, value)
+        deserialized(self.file, key, value)
     }
 
     fn section<T: serde::de::DeserializeOwned + Validate>(&mut self, section: &str) -> PlantResult<T> {
@@ -245,6 +246,19 @@ impl Reader<'_> {
     ) -> PlantResult<Vec<T>> {
         let members = layout.members.iter().filter(|member| member.kind == kind);
         members.map(|member| self.section(&member.section)).collect()
+    }
+
+    /// Numbers of the masses that produce no heat, in the layout's order.
+    fn passive_masses(&mut self, layout: &Layout) -> PlantResult<Vec<ThermalMass>> {
+        let mut masses = Vec::new();
+        for mass in &layout.masses {
+            let member = &layout.members[mass.member];
+            if let Some(read) = member.kind.data().read {
+                let value = library::take(self.file, &mut self.table, &member.section)?;
+                masses.push(read(self.file, &member.section, value)?);
+            }
+        }
+        Ok(masses)
     }
 
     fn one<T: serde::de::DeserializeOwned + Validate>(
@@ -316,7 +330,7 @@ impl Reader<'_> {
                 let value = others.and_then(|section| section.as_table_mut()?.remove(key));
                 let Some(value) = value else { return Ok(0.0) };
                 let path = format!("{section}.{key}");
-                let share: f64 = library::deserialized(self.file, &path, value)?;
+                let share: f64 = deserialized(self.file, &path, value)?;
                 check_range(&path, share, 0.0, 1.0).map_err(|violation| violation.in_file(self.file))?;
                 Ok(share)
             };
@@ -375,7 +389,7 @@ impl Reader<'_> {
                 file: self.file.to_owned(),
                 message: format!("`{path}` is missing"),
             })?;
-            let conductance_w_k: f64 = library::deserialized(self.file, &path, value)?;
+            let conductance_w_k: f64 = deserialized(self.file, &path, value)?;
             let (low, high) = EXCHANGER_UA_RANGE_W_K;
             check_range(&path, conductance_w_k, low, high)
                 .map_err(|violation| violation.in_file(self.file))?;
@@ -385,7 +399,7 @@ impl Reader<'_> {
         let own = self.own.get("refrigeration").and_then(Value::as_table);
         section.retain(|key, _| !key.ends_with("_ua_w_k") || own.is_some_and(|own| own.contains_key(key)));
         let parameters: RefrigerationParameters =
-            library::deserialized(self.file, "refrigeration", Value::Table(section))?;
+            deserialized(self.file, "refrigeration", Value::Table(section))?;
         let checked = parameters.validate().map_err(|violation| violation.within("refrigeration"));
         checked.map_err(|violation| violation.in_file(self.file))?;
         Ok((Some(parameters), conductances_w_k))

@@ -5,7 +5,7 @@ use super::planned::PlannedWiring;
 use super::shape::{Given, Shape, bring, entering_w, is_first, settle};
 use super::{Forecast, INLET_PLACES};
 use crate::architecture::indices::{
-    BranchIndices, ExchangerIndices, FrontEndIndices, HeaterIndices, Indices, LoopIndices, OwnedIndices,
+    BranchIndices, ExchangerIndices, FrontEndIndices, HeaterIndices, Indices, LoopIndices,
 };
 use crate::architecture::layout::CabinLayout;
 use crate::architecture::wiring::SERIES_PLACES;
@@ -66,8 +66,8 @@ impl<W: Wiring> Compiled<W> {
 
     #[inline(always)]
     fn entering<const POSITION: usize>(now: &Conditions<'_>, flows: &Flows, sources_w: &mut NodeValues) {
-        if let Some(inlet) = const { at(W::INDICES.inlets, POSITION) } {
-            bring(&inlet, entering_w(&inlet, flows), now, sources_w);
+        if let Some(inlet) = const { there(W::INDICES.inlets, POSITION) } {
+            bring(inlet, entering_w(inlet, flows), now, sources_w);
         }
     }
 
@@ -86,9 +86,9 @@ impl<W: Wiring> Compiled<W> {
         base_k: &NodeValues,
         forecasts: &mut [Forecast; INLET_PLACES],
     ) {
-        if let Some(inlet) = const { at(W::INDICES.inlets, POSITION) } {
+        if let Some(inlet) = const { there(W::INDICES.inlets, POSITION) } {
             let mut probe_w = NodeValues::default();
-            bring(&inlet, 1.0, now, &mut probe_w);
+            bring(inlet, 1.0, now, &mut probe_w);
             let supply = inlet.supply.index();
             forecasts[POSITION] = Forecast {
                 base_k: base_k[supply],
@@ -108,11 +108,16 @@ impl<W: Wiring> Compiled<W> {
 
     #[inline(always)]
     fn settled<const POSITION: usize>(now: &Conditions<'_>, flows: &mut Flows) {
-        if let Some(inlet) = const { at(W::INDICES.inlets, POSITION) } {
-            let heat_w = entering_w(&inlet, flows);
-            settle(&inlet, heat_w, now, flows);
+        if let Some(inlet) = const { there(W::INDICES.inlets, POSITION) } {
+            let heat_w = entering_w(inlet, flows);
+            settle(inlet, heat_w, now, flows);
         }
     }
+}
+
+/// Where an entry of a list is, if there is one: loops inside it are unrolled too late for a copy to be looked through.
+const fn there<T>(list: &[T], position: usize) -> Option<&T> {
+    if position < list.len() { Some(&list[position]) } else { None }
 }
 
 /// An entry of a list, if there is one.
@@ -138,8 +143,8 @@ impl<W: Wiring> Shape for Compiled<W> {
     type Factors = Factors;
 
     #[inline(always)]
-    fn indices(_: &OwnedIndices) -> Indices<'_> {
-        const { W::INDICES }
+    fn indices<'a>(_: &'a Indices<'a>) -> &'a Indices<'a> {
+        const { &W::INDICES }
     }
 
     #[inline(always)]

@@ -11,6 +11,7 @@ pub mod shape;
 
 use crate::architecture::indices::OwnedIndices;
 use crate::architecture::layout::Layout;
+use crate::numerics::planned_network::TooLarge;
 use crate::numerics::thermal_network::{NodeValues, heat_gained_j};
 use built_in::Shaped;
 use conditions::Constants;
@@ -42,19 +43,22 @@ pub struct Network {
 
 impl Network {
     /// The network of a layout; heat capacities by node.
-    #[must_use]
-    pub fn new(layout: &Layout, capacities_j_k: NodeValues, constants: Constants) -> Self {
+    ///
+    /// # Errors
+    /// It is too large to be planned.
+    pub fn new(layout: &Layout, capacities_j_k: NodeValues, constants: Constants) -> Result<Self, TooLarge> {
         let indices = OwnedIndices::of(layout);
         let shaped = Shaped::of(&indices.view());
-        let planned = shaped.is_none().then(|| PlannedWiring::of(&indices.view()));
-        Self { indices, capacities_j_k, constants, shaped, planned, nodes: layout.nodes.len() }
+        let planned = shaped.is_none().then(|| PlannedWiring::of(&indices.view())).transpose()?;
+        Ok(Self { indices, capacities_j_k, constants, shaped, planned, nodes: layout.nodes.len() })
     }
 
-    /// The same, stepped by the executor for any architecture.
+    /// The same, stepped by the executor for any architecture; a compiled one that is too large for it stays compiled.
     #[must_use]
     pub fn planned(mut self) -> Self {
-        self.shaped = None;
-        self.planned = Some(PlannedWiring::of(&self.indices.view()));
+        if let Ok(planned) = PlannedWiring::of(&self.indices.view()) {
+            (self.shaped, self.planned) = (None, Some(planned));
+        }
         self
     }
 

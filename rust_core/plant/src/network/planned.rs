@@ -4,12 +4,12 @@ use super::conditions::state;
 use super::shape::{Given, Shape, bring, entering_w, is_first, settle};
 use super::{Forecast, INLET_PLACES};
 use crate::architecture::indices::{
-    BranchIndices, ExchangerIndices, FrontEndIndices, HeaterIndices, Indices, LoopIndices, OwnedIndices,
+    BranchIndices, ExchangerIndices, FrontEndIndices, HeaterIndices, Indices, LoopIndices,
 };
 use crate::architecture::layout::CabinLayout;
 use crate::architecture::wiring::{HeatSource, Inlet, Link};
 use crate::flows::{Flow, Flows};
-use crate::numerics::planned_network::{PlannedNetwork, PlannedStep, SIDE_BY_SIDE};
+use crate::numerics::planned_network::{PlannedNetwork, PlannedStep, SIDE_BY_SIDE, TooLarge};
 use crate::numerics::thermal_network::{LinkState, MAXIMUM_LINKS, Node, NodeValues};
 use std::cell::Cell;
 
@@ -33,8 +33,8 @@ impl Shape for Planned {
     type Factors = Scratch;
 
     #[inline(always)]
-    fn indices(own: &OwnedIndices) -> Indices<'_> {
-        own.view()
+    fn indices<'a>(own: &'a Indices<'a>) -> &'a Indices<'a> {
+        own
     }
 
     #[inline(always)]
@@ -138,16 +138,18 @@ impl Drop for Scratch {
 
 impl PlannedWiring {
     /// Plans a wiring.
-    #[must_use]
-    pub fn of(indices: &Indices<'_>) -> Self {
+    ///
+    /// # Errors
+    /// See [`PlannedNetwork::new`].
+    pub fn of(indices: &Indices<'_>) -> Result<Self, TooLarge> {
         let first = |place: usize| is_first(indices.links, place);
-        Self {
-            network: PlannedNetwork::new(indices.nodes, indices.ports, indices.known_first),
+        Ok(Self {
+            network: PlannedNetwork::new(indices.nodes, indices.ports, indices.known_first)?,
             links: indices.links.iter().enumerate().map(|(place, &link)| (link, first(place))).collect(),
             sources: indices.sources.to_vec(),
             inlets: indices.inlets.to_vec(),
             known_first: indices.known_first.to_vec(),
-        }
+        })
     }
 
     fn sources_w(&self, given: &Given<'_>, flows: &Flows) -> NodeValues {

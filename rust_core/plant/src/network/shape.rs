@@ -4,10 +4,10 @@ use super::conditions::{Conditions, Constants};
 use super::planned::PlannedWiring;
 use super::{Forecast, INLET_PLACES};
 use crate::architecture::indices::{
-    BranchIndices, ExchangerIndices, FrontEndIndices, HeaterIndices, Indices, LoopIndices, OwnedIndices,
+    BranchIndices, ExchangerIndices, FrontEndIndices, HeaterIndices, Indices, LoopIndices,
 };
 use crate::architecture::layout::CabinLayout;
-use crate::architecture::wiring::{Inlet, Link};
+use crate::architecture::wiring::{Inlet, Link, SeriesPlace};
 use crate::flows::{Flow, Flows};
 use crate::numerics::thermal_network::NodeValues;
 
@@ -32,8 +32,9 @@ pub trait Shape {
     /// A factorised step.
     type Factors;
 
-    /// Positions: constants, or those of the vehicle.
-    fn indices(own: &OwnedIndices) -> Indices<'_>;
+    /// Positions: constants, or those of the vehicle. A reference, since the compiler looks through one to a constant, while it
+    /// forgets what it knows of a copy as soon as a function that is not inlined gets to see it.
+    fn indices<'a>(own: &'a Indices<'a>) -> &'a Indices<'a>;
 
     /// Entry number `N` of [`Indices::loops`], if there is one.
     fn circuit_at<const N: usize>(shape: &Indices<'_>) -> Option<LoopIndices>;
@@ -115,32 +116,42 @@ macro_rules! each {
 }
 pub(crate) use each;
 
+/// Share of the heat entering a loop that each branch of its series takes, the rest is what is left in the end. Written out
+/// place by place: a loop would still look at run time whether a compiled inlet has one.
+#[inline(always)]
+fn share_out(inlet: &Inlet, now: &Conditions<'_>, mut give: impl FnMut(&SeriesPlace, f64)) -> f64 {
+    let [first, second, third] = &inlet.series;
+    let mut left = 1.0;
+    let mut take = |place: &Option<SeriesPlace>| {
+        if let Some(place) = place {
+            let conductance_w_k = now.branches_w_k[usize::from(place.branch)];
+            let share = left * (conductance_w_k / now.rates_w_k[usize::from(inlet.circuit)]);
+            give(place, share);
+            left -= share;
+        }
+    };
+    take(first);
+    take(second);
+    take(third);
+    left
+}
+
 /// Brings heat that enters a loop where it ends up: in its supply and, in part, in the series behind the exchanger.
 ///
 /// A branch in series sees coolant that is warmer by `Q / C`; that part of its link is a fixed flow, entered here.
 #[inline(always)]
 pub(super) fn bring(inlet: &Inlet, heat_w: f64, now: &Conditions<'_>, sources_w: &mut NodeValues) {
-    let mut left = 1.0;
-    for place in inlet.series.iter().flatten() {
-        let share =
-            left * (now.branches_w_k[usize::from(place.branch)] / now.rates_w_k[usize::from(inlet.circuit)]);
-        sources_w[place.node.index()] += heat_w * share;
-        left -= share;
-    }
+    let left = share_out(inlet, now, |place, share| sources_w[place.node.index()] += heat_w * share);
     sources_w[inlet.supply.index()] += heat_w * left;
 }
 
 /// Takes the same part from the flows of the branches in series.
 #[inline(always)]
 pub(super) fn settle(inlet: &Inlet, heat_w: f64, now: &Conditions<'_>, flows: &mut Flows) {
-    let mut left = 1.0;
-    for place in inlet.series.iter().flatten() {
-        let share =
-            left * (now.branches_w_k[usize::from(place.branch)] / now.rates_w_k[usize::from(inlet.circuit)]);
+    share_out(inlet, now, |place, share| {
         let given_w = heat_w * share;
         flows[place.flow] += if place.out_of_loop { given_w } else { -given_w };
-        left -= share;
-    }
+    });
 }
 
 /// Heat of an inlet's flow, positive into the loop [W].

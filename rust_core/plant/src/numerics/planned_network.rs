@@ -66,6 +66,15 @@ pub struct PlannedNetwork {
     backward: Vec<Subtraction>,
 }
 
+/// A network for which there are not enough places.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TooLarge {
+    /// What there is too much of.
+    pub what: &'static str,
+    /// How much.
+    pub found: usize,
+}
+
 /// A factorised backward-Euler step.
 #[derive(Debug, Clone)]
 pub struct PlannedStep {
@@ -131,21 +140,25 @@ fn order(filled: &mut Pattern, known_first: &[Node]) -> Vec<usize> {
 impl PlannedNetwork {
     /// Plans the elimination of a network; nodes that are known first are eliminated last.
     ///
-    /// # Panics
-    /// There are more nodes or links than [`MAXIMUM_NODES`] and [`MAXIMUM_LINKS`], or the matrix has too many entries.
-    #[must_use]
-    pub fn new(nodes: usize, links: &[LinkPorts], known_first: &[Node]) -> Self {
-        assert!(nodes <= MAXIMUM_NODES && links.len() <= MAXIMUM_LINKS, "the network is too large");
+    /// # Errors
+    /// There are more nodes, links or entries of the matrix than there are places for.
+    pub fn new(nodes: usize, links: &[LinkPorts], known_first: &[Node]) -> Result<Self, TooLarge> {
+        if nodes > MAXIMUM_NODES || links.len() > MAXIMUM_LINKS {
+            return Err(TooLarge { what: "nodes and links", found: nodes + links.len() });
+        }
         let mut filled = pattern(nodes, links);
         let order = order(&mut filled, known_first);
         let mut places = vec![vec![SPARE; nodes]; nodes];
         let mut used = 0_usize;
         for (places, filled) in places.iter_mut().zip(&filled) {
             for (place, _) in places.iter_mut().zip(filled).filter(|(_, filled)| **filled) {
-                assert!(used < SPARE as usize, "the network has too many links");
-                *place = used as u8;
+                // What has no place is counted only.
+                *place = u8::try_from(used).unwrap_or(SPARE);
                 used += 1;
             }
+        }
+        if used > usize::from(SPARE) {
+            return Err(TooLarge { what: "entries of the matrix", found: used });
         }
         let mut planned = Self {
             nodes,
@@ -164,7 +177,7 @@ impl PlannedNetwork {
         for position in (0..nodes).rev() {
             planned.plan_back_row(position, &order, &filled, &places);
         }
-        planned
+        Ok(planned)
     }
 
     fn plan_pivot(&mut self, position: usize, order: &[usize], filled: &Pattern, places: &[Vec<u8>]) {
@@ -374,5 +387,25 @@ impl LinkPlaces {
             hot: node(ports.hot),
             cold: node(ports.cold),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_network_without_enough_places_is_refused() {
+        let node = |place: usize| Some(Node::new((place % MAXIMUM_NODES) as u8));
+        // Four entries each that no other brings in.
+        let link = |place: usize| {
+            let (row, column) = (2 * place, 2 * (place + place / (MAXIMUM_NODES / 2) + 1));
+            LinkPorts { loses: node(row), gains: node(row + 1), hot: node(column), cold: node(column + 1) }
+        };
+        let links: Vec<LinkPorts> = (0..MAXIMUM_LINKS).map(link).collect();
+        assert!(PlannedNetwork::new(MAXIMUM_NODES, &links[..4], &[]).is_ok());
+        let refused = PlannedNetwork::new(MAXIMUM_NODES, &links, &[]).expect_err("too many entries");
+        assert!(refused.what == "entries of the matrix" && refused.found > 255, "{refused:?}");
+        assert!(PlannedNetwork::new(MAXIMUM_NODES + 1, &links[..1], &[]).is_err());
     }
 }

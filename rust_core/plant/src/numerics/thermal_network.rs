@@ -307,7 +307,7 @@ mod tests {
         #[test]
         fn a_planned_network_does_the_same_to_the_last_bit(branch in 0.0..50.0_f64, step_s in 0.01..100.0_f64) {
             use crate::numerics::planned_network::{PlannedNetwork, PlannedStep};
-            let planned = PlannedNetwork::new(Chain::NODES, Chain::LINKS, Chain::KNOWN_FIRST);
+            let planned = PlannedNetwork::new(Chain::NODES, Chain::LINKS, Chain::KNOWN_FIRST).expect("small");
             let (links, mut sources) = (links(branch), NodeValues::default());
             sources[A.index()] = 75.0;
             let step = Network::factorise(&capacities(), &links, step_s);

@@ -27,14 +27,30 @@ pub enum Executor {
     Planned,
 }
 
-impl Executor {
-    /// A built-in scenario.
-    fn experiment(self, name: &str) -> Arc<Experiment> {
-        let mut experiment = Experiment::load(name, None, &[]).expect("built-in scenario");
-        if self == Self::Planned {
+/// What drives the workloads.
+#[derive(Debug, Clone)]
+pub struct Car {
+    /// What steps its thermal network.
+    pub executor: Executor,
+    /// Vehicle by name or path; that of each scenario where absent.
+    pub vehicle: Option<String>,
+}
+
+impl Car {
+    /// A built-in scenario driven with this car.
+    fn experiment(&self, name: &str) -> Arc<Experiment> {
+        let mut experiment =
+            Experiment::with_vehicle(name, self.vehicle.as_deref(), None, &[]).expect("a vehicle that fits");
+        if self.executor == Executor::Planned {
             experiment.plant = Arc::new(Arc::unwrap_or_clone(experiment.plant).with_planned_network());
         }
         Arc::new(experiment)
+    }
+
+    /// All built-in scenarios; of the paper's only for a vehicle of its own, which may lack what others speak of.
+    fn scenarios(&self) -> Vec<&'static str> {
+        let all = library::names(SCENARIO).into_iter();
+        all.filter(|name| self.vehicle.is_none() || name.starts_with("jeffs2019/")).collect()
     }
 }
 
@@ -48,6 +64,13 @@ pub struct Segment {
 }
 
 impl Segment {
+    /// Nodes and links of its vehicle's network.
+    #[allow(dead_code, reason = "not every program that drives stretches says so")]
+    pub fn network(&self) -> (usize, usize) {
+        let layout = self.experiment.plant.layout();
+        (layout.nodes.len(), layout.links.len())
+    }
+
     /// Drives the stretch once; the sum of battery powers keeps the compiler honest.
     pub fn replay(&self) -> f64 {
         let mut run = self.start;
@@ -87,10 +110,10 @@ fn compressor_on(experiment: &Experiment) -> Vec<(Run, bool)> {
 }
 
 /// All stretches of the paper's nine scenarios during which the compressor runs.
-pub fn compressor_on_segments(executor: Executor) -> Vec<Segment> {
+pub fn compressor_on_segments(car: &Car) -> Vec<Segment> {
     let mut segments = Vec::new();
     for name in library::names(SCENARIO).iter().filter(|name| name.starts_with("jeffs2019/")) {
-        let experiment = executor.experiment(name);
+        let experiment = car.experiment(name);
         let steps = compressor_on(&experiment);
         let mut from = 0;
         while from < steps.len() {
@@ -110,14 +133,18 @@ pub fn compressor_on_segments(executor: Executor) -> Vec<Segment> {
 }
 
 /// Whole trips of all built-in scenarios under actions drawn uniformly each second, as by an agent that knows
-/// nothing: six connections, PTC and eleven levels of compressor power; everything else as the scenario has it.
-pub fn random_segments(executor: Executor) -> Vec<Segment> {
+/// nothing: six connections, PTC and eleven levels of compressor power, or a compressor at rest; everything else as the
+/// scenario has it.
+pub fn random_segments(car: &Car, compressor_runs: bool) -> Vec<Segment> {
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let segment = |name: &&str| {
-        let experiment = executor.experiment(name);
+        let experiment = car.experiment(name);
         let (mut run, mut commands) = (experiment.start(), Vec::new());
         loop {
-            let command = random_command(&experiment, &mut random);
+            let mut command = random_command(&experiment, &mut random);
+            if let (Some(row), false) = (experiment.plant.layout().compressor_row, compressor_runs) {
+                command.0[row] = -1.0;
+            }
             commands.push(command);
             if experiment.step(&mut run, &command).is_some() {
                 break;
@@ -130,7 +157,7 @@ pub fn random_segments(executor: Executor) -> Vec<Segment> {
             driver: Driver::Prepared(commands),
         }
     };
-    library::names(SCENARIO).iter().map(segment).collect()
+    car.scenarios().iter().map(segment).collect()
 }
 
 fn random_command(experiment: &Experiment, random: &mut Random) -> Command {

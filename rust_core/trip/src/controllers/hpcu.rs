@@ -3,7 +3,8 @@
 //! Three purposes: constant coolant flow demands, connections of the components, compressor demand. It reads
 //! the plant's temperatures as a real one does and has no way to the plant but its [`Demand`].
 
-use super::rule_based::{CabinMode, ConstantSettings, Presets, RuleBased};
+use super::options::Options;
+use super::rule_based::{CabinMode, ConstantSettings, Presets, RuleBased, constant_settings_of};
 use crate::roles::{Connectable, Roles, Store, Way};
 use crate::strategy::{BatteryTreatment, ClimateControl, Strategy};
 use hp_plant::architecture::layout::Layout;
@@ -54,6 +55,9 @@ parameters! {
         htc_pid: PidParameters,
         /// Compressor power against chiller supply, W per K.
         chiller_pid: PidParameters,
+        /// What today's cars have beyond the paper's rules (ours); nothing where the file has no such table.
+        #[serde(default)]
+        options: Options,
     }
 }
 
@@ -135,17 +139,7 @@ struct PowerGains {
     chiller: ResetGains,
 }
 
-/// What parameters ask for whatever happens.
-fn constant_settings(parameters: &HpcuParameters) -> ConstantSettings {
-    ConstantSettings {
-        cabin_set_point_degc: parameters.cabin_set_point_degc,
-        htc_flow_kg_s: parameters.htc_flow_kg_s,
-        chiller_flow_kg_s: parameters.chiller_flow_kg_s,
-        blower_level: parameters.blower_level,
-        heating_recirculation: parameters.heating_recirculation,
-        cooling_recirculation: parameters.cooling_recirculation,
-    }
-}
+constant_settings_of!(HpcuParameters);
 
 impl RuleBased for Hpcu {
     type Parameters = HpcuParameters;
@@ -160,7 +154,9 @@ impl RuleBased for Hpcu {
             chiller: gains(&parameters.chiller_pid),
         };
         let roles = Roles::of(layout, &strategy);
-        let presets = Presets::of(&roles, &constant_settings(&parameters));
+        let mut settings = ConstantSettings::from(&parameters);
+        settings.cabin_set_point_degc.0 -= parameters.options.heater_offset_k(roles.heat_pump(&strategy));
+        let presets = Presets::of(&roles, &settings);
         Self { roles, presets, parameters, strategy, gains }
     }
 
@@ -169,7 +165,7 @@ impl RuleBased for Hpcu {
     }
 
     fn constant_settings(&self) -> ConstantSettings {
-        constant_settings(&self.parameters)
+        ConstantSettings::from(&self.parameters)
     }
 
     fn awake(&self, _: &Plant, state: &State) -> HpcuMemory {
@@ -196,6 +192,8 @@ impl RuleBased for Hpcu {
             && self.cabin_error_k(state, mode) >= self.parameters.ptc_from_deviation_k;
         self.roles.allow_heaters(heats, demand);
         self.trim_requests(state, memory, mode, demand);
+        let (parameters, lack_k) = (&self.parameters, self.cabin_error_k(state, mode));
+        self.roles.blow(parameters.options.blower_level(mode, parameters.blower_level, lack_k), demand);
         if let Some(row) = self.roles.compressor_row {
             demand[row] = self.compressor_power_w(plant, state, memory, mode);
         }
@@ -250,7 +248,7 @@ impl Hpcu {
                     heat_up_to_k - if memory.heats_battery { 0.0 } else { limits.heating_hysteresis_k };
                 let release_k =
                     cool_above_k - if memory.cools_battery { limits.cooling_hysteresis_k } else { 0.0 };
-                (battery_k < resume_k, battery_k > release_k)
+                (battery_k < resume_k && self.battery_share(state) > 0.0, battery_k > release_k)
             }
         };
         match (memory.heats_battery, memory.cools_battery) {
@@ -274,19 +272,26 @@ impl Hpcu {
             let above_k = temperature_k(state, self.roles.battery_node) - limits.source_down_to_degc.kelvin();
             demand[battery.request_row] *= (above_k / limits.source_request_band_k).clamp(0.0, 1.0);
         }
+        if let Some(battery) = self.roles.battery
+            && memory.heats_battery
+        {
+            demand[battery.request_row] *= self.battery_share(state);
+        }
         if mode == CabinMode::Cooling {
             self.roles.unlimit_rejection(demand);
         }
     }
 
+    /// Share of its heat request that the battery gets while the cabin comes first.
+    fn battery_share(&self, state: &State) -> f64 {
+        let supplies_k = self.roles.hot_supplies.iter().map(|&node| temperature_k(state, node));
+        let lack_k = self.cabin_error_k(state, CabinMode::Heating);
+        self.parameters.options.battery_share(lack_k, supplies_k.reduce(f64::max))
+    }
+
     /// Deviation that calls for compressor power [K].
     fn cabin_error_k(&self, state: &State, mode: CabinMode) -> f64 {
-        let below_k =
-            self.parameters.cabin_set_point_degc.kelvin() - temperature_k(state, self.roles.cabin_air);
-        match mode {
-            CabinMode::Heating => below_k,
-            CabinMode::Cooling => -below_k,
-        }
+        mode.lack_k(self.parameters.cabin_set_point_degc.kelvin(), temperature_k(state, self.roles.cabin_air))
     }
 
     /// `min(max(PID battery, PID cabin), PID chiller, PID HTC)`.

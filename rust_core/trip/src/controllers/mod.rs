@@ -5,6 +5,7 @@
 
 pub mod file;
 pub mod hpcu;
+pub mod options;
 pub mod rule_based;
 pub mod thermostat;
 

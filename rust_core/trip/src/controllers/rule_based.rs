@@ -20,6 +20,17 @@ pub enum CabinMode {
     Cooling,
 }
 
+impl CabinMode {
+    /// How far a cabin is from its target, counted in the direction that this mode works against [K].
+    #[must_use]
+    pub fn lack_k(self, target_k: f64, cabin_k: f64) -> f64 {
+        match self {
+            Self::Heating => target_k - cabin_k,
+            Self::Cooling => cabin_k - target_k,
+        }
+    }
+}
+
 /// What a controller asks for whatever happens; an agent that does not control these rows leaves them as they are here.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConstantSettings {
@@ -68,6 +79,26 @@ impl ConstantSettings {
         }
     }
 }
+
+/// Takes these settings from parameters that have keys of their names.
+macro_rules! constant_settings_of {
+    ($parameters:ty) => {
+        impl From<&$parameters> for $crate::controllers::rule_based::ConstantSettings {
+            fn from(parameters: &$parameters) -> Self {
+                Self {
+                    cabin_set_point_degc: parameters.cabin_set_point_degc,
+                    htc_flow_kg_s: parameters.htc_flow_kg_s,
+                    chiller_flow_kg_s: parameters.chiller_flow_kg_s,
+                    blower_level: parameters.blower_level,
+                    heating_recirculation: parameters.heating_recirculation,
+                    cooling_recirculation: parameters.cooling_recirculation,
+                }
+            }
+        }
+    };
+}
+
+pub(super) use constant_settings_of;
 
 /// What does not change while a mode lasts, as rows and values: connections by role, and constant settings.
 #[derive(Debug, Clone, PartialEq)]

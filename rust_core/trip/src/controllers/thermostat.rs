@@ -1,6 +1,7 @@
 //! A thermostat: full power on one side of a cabin temperature, none on the other. Untuned, to compare others with.
 
-use super::rule_based::{CabinMode, ConstantSettings, Presets, RuleBased};
+use super::options::Options;
+use super::rule_based::{CabinMode, ConstantSettings, Presets, RuleBased, constant_settings_of};
 use crate::roles::Roles;
 use crate::strategy::{ClimateControl, Strategy};
 use hp_plant::architecture::layout::Layout;
@@ -32,6 +33,10 @@ parameters! {
         heating_recirculation: f64 = 0.0 .. 0.95,
         /// Recirculated share while cooling [-].
         cooling_recirculation: f64 = 0.0 .. 0.95,
+        ;
+        /// What today's cars have beyond simple rules; nothing where the file has no such table. The battery is isolated anyway.
+        #[serde(default)]
+        options: Options,
     }
 }
 
@@ -53,12 +58,8 @@ pub struct ThermostatMemory {
 impl Thermostat {
     /// How far the cabin is beyond the target, counted in the direction that a mode works against [K].
     fn lack_k(&self, state: &State, mode: CabinMode) -> f64 {
-        let below_k = self.parameters.cabin_set_point_degc.kelvin()
-            - state.temperatures_k[self.roles.cabin_air.index()];
-        match mode {
-            CabinMode::Heating => below_k,
-            CabinMode::Cooling => -below_k,
-        }
+        let cabin_k = state.temperatures_k[self.roles.cabin_air.index()];
+        mode.lack_k(self.parameters.cabin_set_point_degc.kelvin(), cabin_k)
     }
 
     /// Heating or cooling; in automatic climate control the other one as soon as that would switch on.
@@ -81,17 +82,7 @@ impl Thermostat {
     }
 }
 
-/// What parameters ask for whatever happens.
-fn constant_settings(parameters: &ThermostatParameters) -> ConstantSettings {
-    ConstantSettings {
-        cabin_set_point_degc: parameters.cabin_set_point_degc,
-        htc_flow_kg_s: parameters.htc_flow_kg_s,
-        chiller_flow_kg_s: parameters.chiller_flow_kg_s,
-        blower_level: parameters.blower_level,
-        heating_recirculation: parameters.heating_recirculation,
-        cooling_recirculation: parameters.cooling_recirculation,
-    }
-}
+constant_settings_of!(ThermostatParameters);
 
 impl RuleBased for Thermostat {
     type Parameters = ThermostatParameters;
@@ -99,7 +90,9 @@ impl RuleBased for Thermostat {
 
     fn new(parameters: ThermostatParameters, strategy: Strategy, layout: &Layout) -> Self {
         let roles = Roles::of(layout, &strategy);
-        let presets = Presets::of(&roles, &constant_settings(&parameters));
+        let mut settings = ConstantSettings::from(&parameters);
+        settings.cabin_set_point_degc.0 -= parameters.options.heater_offset_k(roles.heat_pump(&strategy));
+        let presets = Presets::of(&roles, &settings);
         Self { roles, presets, parameters, strategy }
     }
 
@@ -108,7 +101,7 @@ impl RuleBased for Thermostat {
     }
 
     fn constant_settings(&self) -> ConstantSettings {
-        constant_settings(&self.parameters)
+        ConstantSettings::from(&self.parameters)
     }
 
     fn awake(&self, _: &Plant, state: &State) -> ThermostatMemory {
@@ -121,6 +114,9 @@ impl RuleBased for Thermostat {
         memory.mode = self.mode(state, memory.mode);
         let mode = memory.mode;
         self.presets.enter(mode, demand);
+        let parameters = &self.parameters;
+        let level = parameters.options.blower_level(mode, parameters.blower_level, self.lack_k(state, mode));
+        self.roles.blow(level, demand);
         let cabin_k = state.temperatures_k[self.roles.cabin_air.index()];
         let cold = cabin_k < self.parameters.ptc_below_degc.kelvin();
         self.roles.allow_heaters(self.strategy.ptc && mode == CabinMode::Heating && cold, demand);
@@ -168,6 +164,28 @@ mod tests {
         let cool = demand("jeffs2019/case1-4", 20.9);
         assert!(cool("compressor_power") > 0.0 && cool("ptc") == 0.0);
         assert_eq!(demand("jeffs2019/case1-4", 21.1)("compressor_power"), 0.0);
+    }
+
+    #[test]
+    fn blows_as_much_as_the_cabin_needs_where_its_file_says_so() {
+        let change = Override::parse(
+            "controller.options={ptc_below_target_k=0.5, battery_after_cabin_band_k=0.0, \
+             battery_from_supply_degc=80.0, battery_supply_band_k=5.0, heating_blower_band_k=10.0, \
+             cooling_blower_band_k=5.0, least_blower_level=0.3}",
+        );
+        let experiment =
+            Experiment::load("jeffs2019/case1-4", Some("thermostat"), &[change.expect("an assignment")])
+                .expect("built in");
+        let ranges = &experiment.plant.ranges;
+        let row = |name: &str| ranges.row(name).expect("an actuator");
+        for (cabin_degc, level) in [(5.0, 1.0), (17.0, 0.65), (22.0, 0.3)] {
+            let mut run = experiment.start();
+            run.state.temperatures_k[experiment.plant.layout().cabins[0].air.index()] =
+                Celsius(cabin_degc).kelvin();
+            let demand = experiment.demand(&mut run);
+            assert!((demand[row("blower_level")] - level).abs() < 1e-9, "{cabin_degc}");
+            assert!((demand[row("cabin_set_point")] - Celsius(21.5).kelvin()).abs() < 1e-9);
+        }
     }
 
     #[test]

@@ -1,0 +1,102 @@
+"""Every numbered example runs as its own program and shows what it is there to show."""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+EXAMPLES = ROOT / "examples"
+
+SHOWN = {
+    "01_a_car_of_your_own": [
+        r"01_a_car_of_your_own: \d+\.\d kWh/100 km, arrived",
+        r"environment of .*\.toml: Mu",
+    ],
+    "02_more_parts": [
+        r"actuators: electronics battery_heater cabin_condenser electronics_request electronics_valve",
+        *(
+            rf"{column}: [1-9]\d* W on average"
+            for column in (
+                "electronics_chiller_heat_flow_w",
+                "battery_heater_power_w",
+                "cabin_condenser_heat_flow_w",
+            )
+        ),
+    ],
+    "03_another_refrigerant": [
+        rf"{name}: COP \d\.\d\d, [12]\d\.\d bar at most, 0 breaches"
+        for name in ("R134a.*", "R1234yf.*", "R152a.*")
+    ],
+    "04_controllers": [
+        rf"{name}: \d\.\d\d kWh, \d+\.\d K off target"
+        for name in ("hpcu", "thermostat", r"04_controller\.toml", "cautious")
+    ],
+    "05_files_by_path": [
+        r"05_scenario\.toml: arrived, .* by 04_controller\.toml",
+        *(
+            rf"trip {seed}: (nedc|artemis-urban) at -\d+ degC, \d+\.\d K off target, -\d+ points"
+            for seed in range(3)
+        ),
+    ],
+    "06_rows_of_an_environment": [
+        r"actions: compressor_power blower_level cabin",
+        r"observations: cabin_temperature_degc time_left_s cop speed_in_2_s",
+        r"parts of the reward: .*reward_energy -?\d",
+    ],
+    "07_five_cars": [
+        rf"{name}: cabin at -?\d+\.\d degC, energy ledger within [1-9]e-1\d"
+        for name in ("direct", "three-loops", "two-cabins", "without-heat-pump", "without-thermal-battery")
+    ],
+}
+
+ROWS_SHOWN = [
+    r"arrived converter_temperature_degc converter_connection converter_chiller_heat_flow_w",
+    r"converter cooled to -[6-9]\.\d degC by the rules",
+    r"pressure ratio up to [1-9]\.\d\d",
+    r"ledger within [1-9]e-1\d",
+    r"actions: .*converter",
+    r"observed -?0\.\d+, reward_compressor -\d",
+    r"compressor_energy_kwh 0\.\d*[1-9]",
+]
+
+
+def shown_by(name: str, *arguments: object) -> str:
+    command = [sys.executable, "-W", "error", str(EXAMPLES / f"{name}.py"), *map(str, arguments)]
+    run = subprocess.run(command, cwd=EXAMPLES, capture_output=True, encoding="utf-8", check=False)
+    assert run.returncode == 0, run.stderr
+    return run.stdout
+
+
+def test_each_example_has_what_it_shows() -> None:
+    numbered = sorted(path.stem for path in EXAMPLES.glob("[0-9]*.py"))
+    assert numbered == [*SHOWN, "08_rows_in_rust"]
+    table = (EXAMPLES / "README.md").read_text(encoding="utf-8")
+    contributing = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    for name in numbered:
+        assert f"{name}.py" in table
+        assert f"examples/{name}.py" in contributing
+
+
+@pytest.mark.parametrize("name", SHOWN)
+def test_an_example_runs(name: str) -> None:
+    text = shown_by(name)
+    for pattern in SHOWN[name]:
+        assert re.search(f"^{pattern}", text, re.MULTILINE), (pattern, text)
+
+
+def test_the_pictures_of_the_five_cars_are_written(tmp_path: Path) -> None:
+    shown_by("07_five_cars", tmp_path)
+    assert sorted(path.suffix for path in tmp_path.iterdir()) == [".png"] * 5
+
+
+@pytest.mark.rust
+def test_rows_in_rust_are_all_that_their_additions_need(tmp_path: Path) -> None:
+    if shutil.which("cargo") is None:
+        pytest.skip("no cargo on PATH: the rows are compiled (https://rustup.rs)")
+    text = shown_by("08_rows_in_rust", tmp_path)
+    for pattern in ROWS_SHOWN:
+        assert re.search(f"^{pattern}", text, re.MULTILINE), (pattern, text)
