@@ -36,6 +36,15 @@ def fail(reason: str | Exception) -> NoReturn:
     raise typer.Exit(USAGE_ERROR)
 
 
+def _by_ctrl_c(error: BaseException | None) -> bool:
+    """Whether an error came of a Ctrl-C."""
+    while error is not None:
+        if isinstance(error, KeyboardInterrupt):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
+
+
 def one_line_for_missing_packages(command: Callable[..., None]) -> Callable[..., None]:
     """Wraps a command so that a package or system library that cannot be loaded ends it with one line."""
 
@@ -44,6 +53,9 @@ def one_line_for_missing_packages(command: Callable[..., None]) -> Callable[...,
         try:
             command(*arguments, **options)
         except ImportError as error:
+            # Extensions written with pybind11 turn a Ctrl-C while they are loaded into this error.
+            if _by_ctrl_c(error):
+                raise KeyboardInterrupt from None
             # A module of our own that is not there is a bug, and its traceback tells where.
             if (error.name or "").partition(".")[0] == "hp_gym":
                 raise

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import typer
 from safetensors.numpy import load_file
 from typer.testing import CliRunner, Result
 
@@ -22,6 +23,7 @@ from hp_gym import _core
 from hp_gym.agents.training import configuration, train
 from hp_gym.agents.training.watch import Watch
 from hp_gym.cli.app import app
+from hp_gym.cli.output import one_line_for_missing_packages
 from hp_gym.studies.tuning import ambient_bands, search, tuned_rules
 from hp_gym.studies.tuning.objective import Objective
 
@@ -305,3 +307,23 @@ def test_a_trip_of_0_km_has_null_for_what_does_not_exist(tmp_path: Path) -> None
     assert told["summary"]["distance_km"] == 0.0
     assert told["summary"]["energy_kwh_per_100_km"] is None
     shutil.rmtree(tmp_path)
+
+
+def test_ctrl_c_that_an_extension_reports_as_a_failed_import_is_ctrl_c() -> None:
+    """As pybind11 does with a signal that comes while it loads a module."""
+
+    def loads() -> None:
+        try:
+            raise KeyboardInterrupt
+        except KeyboardInterrupt as error:
+            message = "initialization failed"
+            raise ImportError(message) from error
+
+    def lacks() -> None:
+        message = "No module named 'absent'"
+        raise ImportError(message, name="absent")
+
+    with pytest.raises(KeyboardInterrupt):
+        one_line_for_missing_packages(loads)()
+    with pytest.raises(typer.Exit):
+        one_line_for_missing_packages(lacks)()

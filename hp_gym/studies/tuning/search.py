@@ -72,7 +72,8 @@ def tuned(objective: Objective, start: Choices, trials: int, seed: int, advance:
         seed: Seed of the sampler.
         advance: Called after each trial.
     """
-    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    # Its warnings are tracebacks of trials that Ctrl-C ended.
+    optuna.logging.set_verbosity(optuna.logging.ERROR)
     sampler = optuna.samplers.TPESampler(seed=seed, multivariate=True, n_startup_trials=max(10, trials // 8))
     study = optuna.create_study(direction="maximize", sampler=sampler)
     for known in (PAPER, start):
