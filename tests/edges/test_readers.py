@@ -27,7 +27,7 @@ from hp_gym.agents.controllers import ControllerError, resolve
 from hp_gym.agents.policies import PolicyError, SavedPolicy, onnx_file, reference
 from hp_gym.agents.policies.checksum import CHECKSUM_KEY
 from hp_gym.agents.policies.policy_file import METADATA_KEY, metadata_text, parse, tensors_of
-from hp_gym.agents.training import checkpoint, configuration, train
+from hp_gym.agents.training import checkpoint, configuration
 from hp_gym.agents.training.checkpoint import CheckpointError
 from hp_gym.agents.training.run_folder import RunFolder
 from hp_gym.cli.app import app
@@ -35,6 +35,9 @@ from hp_gym.files import read_bytes
 from hp_gym.messages import LONGEST_MESSAGE, FileError, OneLineError, UncheckedFileWarning
 from hp_gym.studies.benchmark import grid
 from hp_gym.studies.calibration import problem
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
+from fuzz_damage import a_checkpoint
 
 KINDS = ("training configuration", "benchmark", "calibration")
 LOADERS: dict[str, Callable[[str], object]] = {
@@ -88,21 +91,7 @@ def saved(policy: SavedPolicy, tmp_path_factory: pytest.TempPathFactory) -> byte
 @pytest.fixture(scope="module")
 def sealed(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     """A checkpoint as a training writes it."""
-    folder = tmp_path_factory.mktemp("checkpoint")
-    changes = [
-        "total_decisions=256",
-        "checkpoint_interval_decisions=128",
-        "environments={number = 4, threads = 1}",
-        "network.hidden_sizes=[4]",
-        "validation={interval_decisions = 1000, trips = 1}",
-        "environment.control_interval_s=60",
-        "hyperparameters.n_steps=32",
-        "hyperparameters.batch_size=64",
-        "imitation.rounds=0",
-    ]
-    train.start(configuration.load("ppo", changes), "ppo", 0, folder / "run")
-    path = max((folder / "run" / "checkpoints").glob("*.pt"))
-    return path.read_bytes()
+    return a_checkpoint(tmp_path_factory.mktemp("checkpoint"))
 
 
 @pytest.mark.parametrize("kind", KINDS)
