@@ -4,16 +4,17 @@ Doyle-Fuller-Newman model of PyBaMM with the cell of O'Kane et al. 2022 (LG M50,
 potential: that of the graphite against the electrolyte at the separator, where lithium plates first. Below -10 degC the cell's
 Arrhenius laws are extrapolated.
 
-    uv run --no-project --with pybamm==26.10.1.1 scripts/make_charge_limit_table.py            # both tables, about 5 minutes
-    uv run --no-project --with pybamm==26.10.1.1 scripts/make_charge_limit_table.py --check    # law of the plant on a drive cycle
+    uv run --no-project --with pybamm==26.10.1.1 scripts/make_charge_limit_table.py     # both tables, about 4 minutes
 
-The second drives recuperation through the cell as the plant's law allows it, and prints the lowest anode potential.
+With `--check VEHICLE` it drives the recuperation of a cycle through the cell as the plant's law allows it with the table of that
+vehicle's file, at all decelerations, and prints the lowest anode potential.
 """
 
 import argparse
 import csv
 import math
-from collections.abc import Callable, Sequence
+import tomllib
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -61,7 +62,9 @@ class Cell:
         """A simulation with a current, positive while discharging [A]."""
         values = self.values.copy()
         values["Current function [A]"] = current
-        solver = pybamm.IDAKLUSolver(rtol=1e-6, atol=1e-8)
+        # A current that changes must not be stepped over.
+        options = {} if current == "[input]" else {"dt_max": 1.0}
+        solver = pybamm.IDAKLUSolver(rtol=1e-6, atol=1e-8, options=options)
         return pybamm.Simulation(pybamm.lithium_ion.DFN(), parameter_values=values, solver=solver)
 
     def at_rest(self, temperature_degc: float, state_of_charge: float) -> dict[str, float]:
@@ -107,11 +110,10 @@ def largest_rate_per_h(potential_v: Callable[[float], float]) -> float:
     return low
 
 
-def rising(rows: Table, states_of_charge: Sequence[float]) -> Table:
+def rising(rows: Table) -> Table:
     """The table rounded, no value above that of a warmer cell: what is left of the search's tolerance goes."""
-    columns = range(len(states_of_charge))
     for warmer, colder in zip(rows[::-1], rows[-2::-1], strict=False):
-        for column in columns:
+        for column in range(len(STATES_OF_CHARGE)):
             colder[column] = min(colder[column], warmer[column])
     return [[round(value, 3) for value in row] for row in rows]
 
@@ -131,7 +133,7 @@ def tables(cell: Cell) -> tuple[Table, Table]:
             for degc in TEMPERATURES_DEGC
         ]
 
-    return rising(rates(PULSE_S), STATES_OF_CHARGE), rising(rates(CONTINUOUS_S), STATES_OF_CHARGE)
+    return rising(rates(PULSE_S)), rising(rates(CONTINUOUS_S))
 
 
 def print_tables(pulse: Table, continuous: Table) -> None:
@@ -146,45 +148,66 @@ def print_tables(pulse: Table, continuous: Table) -> None:
         print("]")
 
 
-def check(cell: Cell, pulse: Table, continuous: Table) -> None:
+class Law:
+    """The plant's law (`rust_core/plant/src/components/rate_limit.rs`) with the table of a vehicle's file, for the table's own cell."""
+
+    def __init__(self, file: Path) -> None:
+        battery = tomllib.loads(file.read_text())["battery"]
+        self.limit = battery["charge_limit"]
+        self.decay = math.exp(-1.0 / battery["rate_memory_s"])
+        self.pulse_share = 1.0 - math.exp(-PULSE_S / battery["rate_memory_s"])
+        self.memory_per_h = 0.0
+
+    def rates(self, degc: float, state_of_charge: float) -> tuple[float, float]:
+        """Pulse and continuous rate at a temperature that the table has [1/h]."""
+        row = self.limit["temperature_degc"].index(degc)
+        at = [
+            float(np.interp(state_of_charge, self.limit["state_of_charge"], self.limit[key][row]))
+            for key in ("pulse_rate_per_h", "continuous_rate_per_h")
+        ]
+        return at[0], at[1]
+
+    def second(self, degc: float, state_of_charge: float, *, charges: bool) -> float:
+        """Rate of the next second, the largest one or none [1/h]."""
+        pulse, continuous = self.rates(degc, state_of_charge)
+        rate = 0.0
+        if charges:
+            excess = pulse - continuous
+            at_rest = (1.0 - self.pulse_share) * pulse * continuous
+            held = continuous - self.pulse_share * pulse + (1.0 - self.decay) * excess
+            rate = min(max((at_rest - self.memory_per_h * self.decay * excess) / held, 0.0), pulse)
+        self.memory_per_h = rate + (self.memory_per_h - rate) * self.decay
+        return rate
+
+
+def check(cell: Cell, file: Path) -> None:
     """Lowest anode potential where every deceleration of a cycle charges as much as the plant's law allows."""
-    with (ROOT / "configs/cycles/wltc-class3b.csv").open() as file:
-        rows = [row for row in csv.reader(line for line in file if not line.startswith("#"))]
-    speeds_m_s = np.array([float(row[-1]) for row in rows[1:]]) / 3.6
-    acceleration = np.diff(speeds_m_s)
-    decay, share = math.exp(-1.0 / MEMORY_S), 1.0 - math.exp(-PULSE_S / MEMORY_S)
-    print("degc, SOC at start: lowest anode potential [mV], where the battery rests or charges as much as it may")
+    with (ROOT / "configs/cycles/wltc-class3b.csv").open() as lines:
+        rows = list(csv.reader(line for line in lines if not line.startswith("#")))
+    braking = np.diff([float(row[-1]) / 3.6 for row in rows[1:]]) < -0.2
+    print("degc, SOC at start: lowest anode potential [mV], charged [C-rate times minutes]")
     for degc in (-10.0, 0.0, 10.0):
-        for soc in (0.5, 0.9):
-            at = [
-                float(np.interp(soc, STATES_OF_CHARGE, table[TEMPERATURES_DEGC.index(degc)]))
-                for table in (pulse, continuous)
-            ]
-            memory, rates = 0.0, [0.0]
-            for braking in acceleration < -0.2:
-                rate = 0.0
-                if braking:
-                    numerator = (1.0 - share) * at[0] * at[1] - memory * decay * (at[0] - at[1])
-                    denominator = at[1] - share * at[0] + (1.0 - decay) * (at[0] - at[1])
-                    rate = min(max(numerator / denominator, 0.0), at[0])
-                memory = rate + (memory - rate) * decay
-                rates.append(rate)
+        for start in (0.5, 0.9):
+            law, state_of_charge, rates = Law(file), start, [0.0]
+            for charges in braking:
+                rates.append(law.second(degc, state_of_charge, charges=bool(charges)))
+                state_of_charge += rates[-1] / 3600.0 * cell.nominal_ah / cell.capacity_ah
             times_s = np.arange(len(rates), dtype=float)
             current = pybamm.Interpolant(times_s, -cell.nominal_ah * np.array(rates), pybamm.t)
-            solution = cell.simulation(current).solve(times_s, inputs=cell.at_rest(degc, soc))
-            print(f"{degc:5.0f} {soc:4.1f}: {1000.0 * float(solution[ANODE].entries.min()):6.2f}")
+            solution = cell.simulation(current).solve(times_s[[0, -1]], inputs=cell.at_rest(degc, start))
+            lowest_mv = 1000.0 * float(solution[ANODE].entries.min())
+            print(f"{degc:5.0f} {start:4.1f}: {lowest_mv:6.2f} {sum(rates) / 60.0:6.2f}")
 
 
 def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="drive the law through the cell")
+    parser.add_argument("--check", type=Path, metavar="VEHICLE", help="drive the law of that file through the cell")
     arguments = parser.parse_args()
-    cell = Cell()
-    pulse, continuous = tables(cell)
-    print_tables(pulse, continuous)
     if arguments.check:
-        check(cell, pulse, continuous)
+        check(Cell(), arguments.check)
+    else:
+        print_tables(*tables(Cell()))
 
 
 if __name__ == "__main__":
