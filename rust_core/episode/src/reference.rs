@@ -65,8 +65,7 @@ impl ReferenceTrip {
         let (start_m_s, end_m_s) = (disturbance.start_speed_m_s, disturbance.end_speed_m_s);
         let speed_m_s = 0.5 * (start_m_s + end_m_s);
         let temperature_k = REFERENCE_TEMPERATURE.kelvin();
-        let road =
-            vehicle.body.road_load(start_m_s, end_m_s, CONTROL_PERIOD_S, disturbance.air.density_kg_m3);
+        let road = vehicle.body.road_load(start_m_s, end_m_s, CONTROL_PERIOD_S, &disturbance.air);
         let wheel_w = road.wheel_power_w();
         let powertrain = Powertrain {
             motor: &vehicle.motor,

@@ -460,8 +460,7 @@ impl Plant {
     fn road(&self, sight: Sight<'_>, state: &State, segment: &Segment, flows: &mut Flows) -> Drive<'_> {
         let vehicle = &self.vehicle;
         let Segment { step_s, start_m_s, end_m_s, speed_m_s } = *segment;
-        let density_kg_m3 = sight.disturbance.air.density_kg_m3;
-        let road = vehicle.body.road_load(start_m_s, end_m_s, step_s, density_kg_m3);
+        let road = vehicle.body.road_load(start_m_s, end_m_s, step_s, &sight.disturbance.air);
         let wheel_w = road.wheel_power_w();
         let oil_k = state.temperatures_k[sight.shape.transmission.index()];
         let powertrain = Powertrain {

@@ -242,9 +242,15 @@ impl SignalTable {
                 v.plant.battery.charge_left(&v.state.battery)
             })
             .within(0.0, 1.0),
-            function("battery_voltage_v", "V", "mean terminal voltage", |v| {
-                v.recorded(|r| r.battery_voltage_v)
-            })
+            function(
+                "battery_voltage_v",
+                "V",
+                "mean terminal voltage; without a current before the first step",
+                |v| {
+                    let at_rest = || v.plant.battery.open_circuit_voltage_v(&v.state.battery);
+                    v.record.map_or_else(at_rest, |r| r.battery_voltage_v)
+                },
+            )
             .within(250.0, 500.0),
             function("battery_current_a", "A", "mean pack current, positive while discharging", |v| {
                 v.recorded(|r| r.battery_current_a)

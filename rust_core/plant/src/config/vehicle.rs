@@ -453,6 +453,14 @@ impl VehicleParameters {
             }
         }
         self.check_air_streams()?;
+        let battery = &self.battery;
+        for (section, limit) in [
+            ("battery.charge_limit", &battery.charge_limit),
+            ("battery.discharge_limit", &battery.discharge_limit),
+        ] {
+            let checked = limit.check_memory(battery.rate_memory_s);
+            checked.map_err(|violation| violation.within(section))?;
+        }
         let shared = self.cabins[0].solar_share.min(self.cabins[0].occupant_share);
         if shared < 0.0 {
             let allowed =
