@@ -18,6 +18,7 @@ pub mod motor;
 pub mod pid;
 pub mod powertrain;
 pub mod pump;
+pub mod reachable_speed;
 pub mod refrigerant_exchanger;
 pub mod store;
 pub mod thermal_mass;
