@@ -42,6 +42,9 @@ use crate::step_parameters::StepParameters;
 pub use crate::surroundings::{CONTROL_PERIOD_S, Disturbance};
 use serde::{Deserialize, Serialize};
 
+/// Power that the battery leaves where it limits traction, at most: the speed is found to round-off only [W].
+const ROUNDING_W: f64 = 1.0;
+
 /// What happened during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct StepRecord {
@@ -458,6 +461,8 @@ impl Plant {
             segment = self.reachable(sight, state, &segment, supply);
             drive = self.road(sight, state, &segment, flows);
             left_w = limits.discharge_w - drive.electrical_w() - base_w;
+            // Where the motor is what limits, the battery has something left.
+            state.short_of_power = left_w < ROUNDING_W;
             *slower_m_s = wanted_m_s - segment.end_m_s;
             record.end_speed_m_s = segment.end_m_s;
         }
