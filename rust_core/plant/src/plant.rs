@@ -12,11 +12,13 @@ use crate::circuits::refrigeration_loop::{
     CompressorAllowance, Limit, LoopBoundary, LoopResult, RefrigerationState,
 };
 use crate::command::{ActuatorRanges, Command, Demand};
+use crate::components::body::RoadLoad;
 use crate::components::battery::{Battery, BatteryState, BatteryStep, CircuitStep, PowerLimits};
 use crate::components::exhaust_recovery::{ExhaustRecovery, RecoveryTemperatures};
 use crate::components::pid::ResetPid;
 use crate::components::powertrain::{Powertrain, PowertrainFlow};
 use crate::components::pump::PumpState;
+use crate::components::reachable_speed::{TractionSupply, reachable_speed_m_s};
 use crate::components::thermal_switch::ThermalSwitches;
 use crate::config::Violation;
 use crate::config::initial::InitialParameters;
@@ -39,6 +41,9 @@ use crate::state::State;
 use crate::step_parameters::StepParameters;
 pub use crate::surroundings::{CONTROL_PERIOD_S, Disturbance};
 use serde::{Deserialize, Serialize};
+
+/// Power that the battery leaves where it limits traction, at most: the speed is found to round-off only [W].
+const ROUNDING_W: f64 = 1.0;
 
 /// What happened during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -63,6 +68,8 @@ pub struct StepRecord {
     pub ledger: LedgerEntry,
     /// Thermal loads were cut because the battery could not feed them.
     pub loads_shed: bool,
+    /// Vehicle speed at the end [m/s]: what was asked for, or less where motor or battery could not deliver it.
+    pub end_speed_m_s: f64,
 }
 
 /// A vehicle ready to run: parameters, tables and assembled network. It never changes; all that does is in
@@ -118,6 +125,18 @@ struct Drive<'a> {
     wheel_w: f64,
     /// Power flow while driving; while braking it follows later, from what the battery can take.
     driving: Option<PowertrainFlow>,
+}
+
+impl Drive<'_> {
+    /// Electrical power of driving; none while braking [W].
+    fn electrical_w(&self) -> f64 {
+        self.driving.map_or(0.0, |flow| flow.electrical_power_w)
+    }
+
+    /// Whether driving asks for more than the motor has.
+    fn beyond_motor(&self) -> bool {
+        self.driving.is_some_and(|flow| !self.powertrain.within_motor_limits(self.wheel_w, &flow))
+    }
 }
 
 impl Plant {
@@ -226,6 +245,7 @@ impl Plant {
             condensing_pressure_pa: resting_pa.unwrap_or(0.0),
             entered_w: [0.0; LOOP_PLACES],
             front_end_w: [0.0; FRONT_END_PLACES],
+            short_of_power: false,
             heater_power_w: 0.0,
             compressor_power_w: 0.0,
         }
@@ -325,13 +345,26 @@ impl Plant {
         let compressor_row = shape.compressor_row.map(usize::from);
         let mut period = Period::of(self.ranges.decoded(command, shape.actuators, compressor_row));
         let sight = Sight { vehicle: &self.vehicle, parameters: &self.parameters, shape, disturbance };
+        if state.short_of_power {
+            self.spare_pumps_and_blowers(&mut period.demand);
+        }
         self.controls.begin_period::<S>(sight, &self.branches, state, &mut period);
         if self.substeps == 1 {
-            self.substep::<S>(sight, state, &period, 0, record, tamper);
+            self.substep::<S>(sight, state, &period, 0, &mut 0.0, record, tamper);
         } else {
             self.substeps::<S>(sight, state, &period, record, tamper);
         }
         self.end_period::<S>(shape, state, &record.flows);
+    }
+
+    /// Lowest coolant and air flows while the battery cannot give what driving asks for.
+    #[cold]
+    fn spare_pumps_and_blowers(&self, demand: &mut Demand) {
+        let layout = self.layout();
+        let pumps = layout.loops.iter().map(|circuit| circuit.flow_row);
+        for row in pumps.chain(layout.cabins.iter().map(|cabin| cabin.blower_row)) {
+            demand[row] = self.ranges.range(row).0;
+        }
     }
 
     /// All sub-steps of a second; the record becomes their mean.
@@ -348,8 +381,9 @@ impl Plant {
         let mut mean = Flows::default();
         let (mut voltage_v, mut current_a) = (0.0, 0.0);
         let mut worst = (LedgerEntry::default(), false);
+        let mut slower_m_s = 0.0;
         for part in 0..self.substeps {
-            self.substep::<S>(sight, state, period, part, record, tamper);
+            self.substep::<S>(sight, state, period, part, &mut slower_m_s, record, tamper);
             mean.accumulate(&record.flows, share);
             voltage_v += record.battery_voltage_v * share;
             current_a += record.battery_current_a * share;
@@ -388,7 +422,9 @@ impl Plant {
     }
 
     /// One integration step: traction demand, constant loads, refrigerant loop, heaters, regeneration and battery, thermal
-    /// network, ledger.
+    /// network, ledger. `slower_m_s` is by how much the vehicle is slower than asked for where the step begins, then where
+    /// it ends.
+    #[allow(clippy::too_many_arguments, reason = "what the phases of a step hand on, nothing of it kept")]
     #[inline(always)]
     fn substep<S: Shape>(
         &self,
@@ -396,22 +432,41 @@ impl Plant {
         state: &mut State,
         period: &Period,
         part: u32,
+        slower_m_s: &mut f64,
         record: &mut StepRecord,
         tamper: &mut impl FnMut(Stage, &mut Flows),
     ) {
         let shape = sight.shape;
-        let segment = self.segment(sight.disturbance, part);
+        let mut segment = self.segment(sight.disturbance, part, *slower_m_s);
         record.flows.clear(shape.flows);
         let flows = &mut record.flows;
-        let drive = self.road(sight, state, &segment, flows);
+        let mut drive = self.road(sight, state, &segment, flows);
         self.constant_loads::<S>(sight, state, period, &segment, flows);
 
-        // What the battery can still give to thermal loads.
+        // Driving comes before thermal loads: they have what it leaves.
         let battery_k = state.temperatures_k[shape.battery.index()];
         let circuit = self.battery.during(&state.battery, battery_k, segment.step_s);
         let limits = circuit.power_limits();
-        let driving_w = drive.driving.map_or(0.0, |flow| flow.electrical_power_w);
-        let spare_w = (limits.discharge_w - driving_w - base_load_w::<S>(shape, flows)).max(0.0);
+        let base_w = base_load_w::<S>(shape, flows);
+        let mut left_w = limits.discharge_w - drive.electrical_w() - base_w;
+        state.short_of_power = left_w < 0.0;
+        record.end_speed_m_s = sight.disturbance.end_speed_m_s;
+        *slower_m_s = 0.0;
+        if drive.driving.is_some() && (left_w < 0.0 || drive.beyond_motor()) {
+            let supply = TractionSupply {
+                most_w: (limits.discharge_w - base_w).max(0.0),
+                recovery_w: limits.charge_w + base_w,
+            };
+            let wanted_m_s = segment.end_m_s;
+            segment = self.reachable(sight, state, &segment, supply);
+            drive = self.road(sight, state, &segment, flows);
+            left_w = limits.discharge_w - drive.electrical_w() - base_w;
+            // Where the motor is what limits, the battery has something left.
+            state.short_of_power = left_w < ROUNDING_W;
+            *slower_m_s = wanted_m_s - segment.end_m_s;
+            record.end_speed_m_s = segment.end_m_s;
+        }
+        let spare_w = left_w.max(0.0);
 
         let conditions = self.conditions::<S>(sight, state, period, segment.speed_m_s);
         let start_k = state.temperatures_k;
@@ -446,30 +501,62 @@ impl Plant {
         record.power_limits = limits;
     }
 
+    /// A piece of a second, asked to end at the speed that it would have if all before had ended at theirs.
     #[inline(always)]
-    fn segment(&self, disturbance: &Disturbance, part: u32) -> Segment {
+    fn segment(&self, disturbance: &Disturbance, part: u32, slower_m_s: f64) -> Segment {
         let step_s = CONTROL_PERIOD_S / f64::from(self.substeps);
         let acceleration = (disturbance.end_speed_m_s - disturbance.start_speed_m_s) / CONTROL_PERIOD_S;
         let start_m_s = disturbance.start_speed_m_s + acceleration * step_s * f64::from(part);
         let end_m_s = start_m_s + acceleration * step_s;
+        let start_m_s = (start_m_s - slower_m_s).max(0.0);
         Segment { step_s, start_m_s, end_m_s, speed_m_s: 0.5 * (start_m_s + end_m_s) }
     }
 
-    /// Traction demand.
+    /// The same piece, ended as fast as motor and battery allow: the vehicle falls behind.
+    #[cold]
+    #[inline(never)]
+    fn reachable(
+        &self,
+        sight: Sight<'_>,
+        state: &State,
+        segment: &Segment,
+        supply: TractionSupply,
+    ) -> Segment {
+        let ending = |end_m_s: f64| Segment {
+            end_m_s,
+            speed_m_s: 0.5 * (segment.start_m_s + end_m_s),
+            ..*segment
+        };
+        ending(reachable_speed_m_s(segment.end_m_s, supply, |end_m_s| {
+            let (road, powertrain) = self.pull(sight, state, &ending(end_m_s));
+            (road.wheel_power_w(), powertrain)
+        }))
+    }
+
+    /// What a piece of the road asks of the powertrain.
     #[inline(always)]
-    fn road(&self, sight: Sight<'_>, state: &State, segment: &Segment, flows: &mut Flows) -> Drive<'_> {
+    fn pull(&self, sight: Sight<'_>, state: &State, segment: &Segment) -> (RoadLoad, Powertrain<'_>) {
         let vehicle = &self.vehicle;
         let Segment { step_s, start_m_s, end_m_s, speed_m_s } = *segment;
         let road = vehicle.body.road_load(start_m_s, end_m_s, step_s, &sight.disturbance.air);
-        let wheel_w = road.wheel_power_w();
         let oil_k = state.temperatures_k[sight.shape.transmission.index()];
+        let motor_k = state.temperatures_k[sight.shape.motor.index()];
         let powertrain = Powertrain {
             motor: &vehicle.motor,
             transmission: &vehicle.transmission,
             regeneration: &vehicle.regeneration,
             speed_m_s,
             spin_loss_w: vehicle.transmission.spin_loss_w(oil_k, speed_m_s),
+            motor_share: vehicle.motor.available_share(motor_k),
         };
+        (road, powertrain)
+    }
+
+    /// Traction demand.
+    #[inline(always)]
+    fn road(&self, sight: Sight<'_>, state: &State, segment: &Segment, flows: &mut Flows) -> Drive<'_> {
+        let (road, powertrain) = self.pull(sight, state, segment);
+        let wheel_w = road.wheel_power_w();
         let driving = (wheel_w >= 0.0).then(|| powertrain.drive(wheel_w));
         flows[Flow::DRAG] = road.drag_power_w;
         flows[Flow::ROLLING] = road.rolling_power_w;

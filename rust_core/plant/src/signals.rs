@@ -180,7 +180,7 @@ impl SignalTable {
 
     fn add_motion(&mut self) {
         let speed = |v: &View<'_>| {
-            if v.record.is_some() { v.disturbance.end_speed_m_s } else { v.disturbance.start_speed_m_s }
+            v.record.map_or(v.disturbance.start_speed_m_s, |record| record.end_speed_m_s)
         };
         self.rows.extend([
             function("time_s", "s", "time since the start", |v| v.state.time_s)

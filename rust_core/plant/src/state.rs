@@ -37,6 +37,8 @@ pub struct State {
     pub entered_w: [f64; LOOP_PLACES],
     /// Heat that each front-end exchanger gave to the air in the last step [W].
     pub front_end_w: [f64; FRONT_END_PLACES],
+    /// The battery had less in the last step than driving, pumps, blower and fan asked for.
+    pub short_of_power: bool,
     /// Power of all heaters in the last step [W].
     pub heater_power_w: f64,
     /// Compressor power of the last step [W].

@@ -5,6 +5,7 @@ use crate::controllers::file::Controller;
 use crate::drive_cycle::DriveCycle;
 use crate::heat_demand_commander::HeatDemandCommander;
 use crate::kinds::SCENARIO;
+use crate::pace::Pace;
 use crate::scenario::{ClimateParameters, ScenarioParameters, known_member};
 use hp_plant::config::initial::InitialParameters;
 use hp_plant::config::library::{self, Override};
@@ -119,7 +120,15 @@ impl Experiment {
         self
     }
 
-    /// What the surroundings do during a step.
+    /// What is asked of a vehicle at its pace in the next second, and what the surroundings do.
+    #[must_use]
+    #[inline]
+    pub fn next_disturbance(&self, step: usize, pace: &Pace) -> Disturbance {
+        let end_speed_m_s = pace.wanted_m_s(&self.cycle, step);
+        Disturbance { start_speed_m_s: pace.speed_m_s, end_speed_m_s, ..self.disturbance(step) }
+    }
+
+    /// What the surroundings do during a step, at the speeds of the cycle.
     #[must_use]
     pub fn disturbance(&self, step: usize) -> Disturbance {
         let speeds = self.cycle.speeds_m_s();

@@ -1,5 +1,6 @@
 //! Totals of a run.
 
+use crate::pace::Pace;
 use hp_plant::architecture::declaration::Side;
 use hp_plant::architecture::layout::{LOOP_PLACES, Layout};
 use hp_plant::config::vehicle::VehicleParameters;
@@ -60,6 +61,8 @@ pub struct Summary {
     energies_j: Flows,
     duration_s: f64,
     distance_m: f64,
+    delay_s: f64,
+    furthest_behind_m: f64,
     discomfort_k_s: f64,
     comfortable_s: f64,
     first_comfort_s: f64,
@@ -83,6 +86,8 @@ impl Default for Summary {
             energies_j: Flows::default(),
             duration_s: 0.0,
             distance_m: 0.0,
+            delay_s: 0.0,
+            furthest_behind_m: 0.0,
             discomfort_k_s: 0.0,
             comfortable_s: 0.0,
             first_comfort_s: f64::NAN,
@@ -114,7 +119,7 @@ impl Summary {
         let layout = plant.layout();
         self.energies_j.accumulate(&record.flows, CONTROL_PERIOD_S);
         self.duration_s += CONTROL_PERIOD_S;
-        self.distance_m += 0.5 * (disturbance.start_speed_m_s + disturbance.end_speed_m_s) * CONTROL_PERIOD_S;
+        self.distance_m += 0.5 * (disturbance.start_speed_m_s + record.end_speed_m_s) * CONTROL_PERIOD_S;
         let cabin_degc = after.temperatures_k[layout.cabins[0].air.index()] - ZERO_CELSIUS_K;
         let deviation_k = (cabin_degc - COMFORT_TEMPERATURE_DEGC).abs();
         self.discomfort_k_s += deviation_k * CONTROL_PERIOD_S;
@@ -133,6 +138,12 @@ impl Summary {
         self.protection_trips = f64::from(after.refrigeration.compressor.protection_trips);
         self.shed_s += f64::from(u8::from(record.loads_shed)) * CONTROL_PERIOD_S;
         self.check_limits(plant, supplies_before_k, after, record);
+    }
+
+    /// Takes down by how much the trip is late after a second, and how far the vehicle is behind.
+    pub fn keep_pace(&mut self, delay_s: usize, pace: &Pace) {
+        self.delay_s = delay_s as f64;
+        self.furthest_behind_m = self.furthest_behind_m.max(pace.behind_m);
     }
 
     /// A breach is a limit passed while the heat pump runs and moves away from where the step began.
@@ -199,6 +210,8 @@ impl Summary {
             ("final_charge_soc_pct", 100.0 * self.final_charge_soc),
             ("duration_s", self.duration_s),
             ("distance_km", distance_km),
+            ("delay_s", self.delay_s),
+            ("furthest_behind_m", self.furthest_behind_m),
             ("discomfort_k", self.discomfort_k_s / self.duration_s),
             ("time_to_comfort_s", self.first_comfort_s),
             ("comfortable_share", self.comfortable_s / self.duration_s),

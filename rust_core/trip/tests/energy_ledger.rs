@@ -107,7 +107,7 @@ impl Moment {
             experiment.step(&mut run, &command);
         }
         let command = experiment.rule_based_command(&mut run);
-        let disturbance = experiment.disturbance(after_s);
+        let disturbance = experiment.next_disturbance(after_s, &run.pace);
         Self { state: run.state, command, disturbance, experiment }
     }
 
@@ -120,13 +120,13 @@ impl Moment {
     }
 }
 
-/// Heating at full swing, hard braking with a cold battery, air conditioning, and a battery at its end.
+/// Heating at full swing, hard braking with a cold battery, air conditioning, and a battery that gives next to nothing.
 fn moments() -> Vec<Moment> {
     let sun = ["scenario.climate.solar_gain_w=300", "scenario.climate.occupants=2"];
     let starved = [
         "scenario.initial.soak_temperature_degc=-36.0",
         "scenario.climate.ambient_temperature_degc=-36.0",
-        "scenario.initial.state_of_charge_pct=30",
+        "vehicle.battery.discharge_limit.maximum_rate_per_h=0.01",
     ];
     let warm_store =
         ["scenario.initial.thermal_battery_temperature_degc=40", "scenario.strategy.transmission=true"];

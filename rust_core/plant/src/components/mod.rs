@@ -19,6 +19,7 @@ pub mod pid;
 pub mod powertrain;
 pub mod pump;
 pub mod rate_limit;
+pub mod reachable_speed;
 pub mod refrigerant_exchanger;
 pub mod store;
 pub mod thermal_mass;

@@ -436,6 +436,13 @@ impl VehicleParameters {
                 format!("must not exceed closing_difference_k ({})", switch.closing_difference_k),
             ));
         }
+        if self.motor.derating_end_degc <= self.motor.derating_start_degc {
+            return Err(Violation::new(
+                "motor.derating_end_degc",
+                self.motor.derating_end_degc.0,
+                format!("must be above derating_start_degc ({})", self.motor.derating_start_degc.0),
+            ));
+        }
         for (circuit, parameters) in self.layout.loops.iter().zip(&self.loops) {
             let Some(exchanger) = circuit.exchanger else { continue };
             let (key, limit) = match self.layout.exchangers[exchanger].level {

@@ -77,7 +77,10 @@ pub fn cabin_air(step: &Step<'_>, cabin: usize, state: &hp_plant::state::State) 
     let (layout, share) = (&step.plant.vehicle.layout.cabins[cabin], &step.plant.vehicle.cabins[cabin]);
     let demand = step.plant.ranges.decode(step.command);
     let occupants = step.disturbance.occupants * share.occupant_share;
-    let (level, recirculation) = (demand[layout.blower_row], demand[layout.recirculation_row]);
+    let (mut level, recirculation) = (demand[layout.blower_row], demand[layout.recirculation_row]);
+    if step.before.short_of_power {
+        level = 0.0;
+    }
     let air = share.parameters.ventilation(level, recirculation, occupants);
     let (fresh, recirculated) = (1.0 - air.recirculation, air.recirculation);
     let cabin_k = state.temperatures_k[layout.air.index()];
@@ -197,7 +200,7 @@ pub fn stream(step: &Step<'_>, place: usize) -> (f64, f64, f64) {
         }
         ExchangerSide::FrontEnd(front_end) => {
             let own = &vehicle.front_ends[front_end];
-            let speed_m_s = step.disturbance.mean_speed_m_s();
+            let speed_m_s = 0.5 * (step.disturbance.start_speed_m_s + step.record.end_speed_m_s);
             let ua_w_k = match exchanger.level {
                 Level::Condensing => own.radiator_ua_w_k + own.radiator_ua_per_speed_w_s_k_m * speed_m_s,
                 Level::Evaporating => own.source_ua_w_k + own.source_ua_per_speed_w_s_k_m * speed_m_s,
