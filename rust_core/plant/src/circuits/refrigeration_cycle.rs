@@ -100,11 +100,15 @@ impl RefrigerationCycle {
             parameters.maximum_pressure_bar * PASCAL_PER_BAR,
         );
         if high_pa > highest_pa {
-            let allowed = format!("must be at most {} for {}", highest_pa / PASCAL_PER_BAR, table.name());
+            let critical = table.limits().map_or(String::new(), |limits| {
+                format!(", whose critical point is at {} bar", limits.critical_pressure_bar)
+            });
+            let allowed =
+                format!("must be at most {:.2} for {}{critical}", highest_pa / PASCAL_PER_BAR, table.name());
             return violation("maximum_pressure_bar", parameters.maximum_pressure_bar, allowed);
         }
         if low_pa < lowest_pa {
-            let allowed = format!("must be at least {} for {}", lowest_pa / PASCAL_PER_BAR, table.name());
+            let allowed = format!("must be at least {:.3} for {}", lowest_pa / PASCAL_PER_BAR, table.name());
             return violation(
                 "minimum_suction_pressure_bar",
                 parameters.minimum_suction_pressure_bar,

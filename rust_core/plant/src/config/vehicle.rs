@@ -1,6 +1,6 @@
 //! One complete vehicle: its architecture, and a section of numbers for each part of it.
 
-use super::kinds::{ARCHITECTURE, VEHICLE};
+use super::kinds::{ARCHITECTURE, FLUID_LIMITS, VEHICLE};
 use super::library::{self, Override};
 use super::{Validate, Violation, check_range, deserialized};
 use crate::architecture::declaration::{Declaration, MemberKind, VEHICLE_SECTIONS};
@@ -23,6 +23,7 @@ use crate::components::thermal_mass::ThermalMass;
 use crate::components::thermal_switch::SwitchParameters;
 use crate::components::transmission::TransmissionParameters;
 use crate::error::{PlantError, PlantResult};
+use crate::media::refrigerant::{self, RefrigerantTable};
 use crate::parameters;
 use crate::signals::SignalTable;
 use std::sync::{Arc, OnceLock};
@@ -186,11 +187,12 @@ impl Reader<'_> {
         };
         let layout = self.architecture(&architecture_name)?;
         let cabins = self.cabins(&layout)?;
-        let (refrigeration, exchanger_ua_w_k) = self.refrigeration(&layout)?;
+        let refrigerant = self.refrigerant(&layout)?;
+        let (refrigeration, exchanger_ua_w_k) = self.refrigeration(&layout, refrigerant.as_deref())?;
         let parameters = VehicleParameters {
             description,
             architecture: architecture_name,
-            refrigerant: if layout.refrigerates() { Some(self.text("refrigerant")?) } else { None },
+            refrigerant,
             body: self.section("body")?,
             regeneration: self.section("regeneration")?,
             battery: self.section("battery")?,
@@ -369,14 +371,52 @@ impl Reader<'_> {
         layout.members.iter().map(plate).collect()
     }
 
-    fn refrigeration(&mut self, layout: &Layout) -> PlantResult<(Option<RefrigerationParameters>, Vec<f64>)> {
+    /// Name or path of the refrigerant, if the architecture has use for one.
+    fn refrigerant(&mut self, layout: &Layout) -> PlantResult<Option<String>> {
         if !layout.refrigerates() {
-            return Ok((None, Vec::new()));
+            return Ok(None);
         }
+        let name = self.text("refrigerant")?;
+        match refrigerant::refusal(&name) {
+            None => Ok(Some(name)),
+            Some(allowed) => {
+                Err(Violation::new("refrigerant", format!("`{name}`"), allowed).in_file(self.file))
+            }
+        }
+    }
+
+    /// Gives the section those limits of the fluid that it does not have itself.
+    fn add_fluid_limits(&self, section: &mut Table, refrigerant: &str) -> PlantResult<()> {
+        let holds = |keys: &[&str]| {
+            let (last, sections) = keys.split_last()?;
+            let inner = sections.iter().try_fold(&*section, |table, key| table.get(*key)?.as_table());
+            inner?.get(*last)
+        };
+        let Some(keys) = FLUID_LIMITS.iter().find(|keys| holds(&keys[1..]).is_none()) else { return Ok(()) };
+        let limits = RefrigerantTable::limits_of(refrigerant).map_err(|error| error.named_by(self.file))?;
+        let Some(limits) = limits else {
+            let allowed = format!(
+                "must be given: the table of refrigerant `{refrigerant}` has no limits in its header (make_table.py writes them)"
+            );
+            return Err(Violation::new(keys.join("."), "missing", allowed).in_file(self.file));
+        };
+        let mut whole = limits.section();
+        library::merge(&mut whole, std::mem::take(section));
+        *section = whole;
+        Ok(())
+    }
+
+    fn refrigeration(
+        &mut self,
+        layout: &Layout,
+        refrigerant: Option<&str>,
+    ) -> PlantResult<(Option<RefrigerationParameters>, Vec<f64>)> {
+        let Some(refrigerant) = refrigerant else { return Ok((None, Vec::new())) };
         let value = library::take(self.file, &mut self.table, "refrigeration")?;
         let Value::Table(mut section) = value else {
             return Err(Violation::new("refrigeration", value, "must be a section").in_file(self.file));
         };
+        self.add_fluid_limits(&mut section, refrigerant)?;
         let mut conductances_w_k = Vec::with_capacity(layout.exchangers.len());
         for exchanger in &layout.exchangers {
             let key = format!("{}_ua_w_k", exchanger.name);

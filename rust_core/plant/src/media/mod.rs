@@ -2,4 +2,5 @@
 
 pub mod air;
 pub mod moist_air;
+pub mod fluid_limits;
 pub mod refrigerant;

@@ -2,8 +2,9 @@
 //!
 //! `configs/refrigerants/make_table.py` writes the tables; all values are SI, temperatures in kelvin.
 
+use super::fluid_limits::{FluidLimits, supercritical_degc};
 use crate::config::kinds::REFRIGERANT;
-use crate::config::library;
+use crate::config::{ZERO_CELSIUS_K, library};
 use crate::error::{PlantError, PlantResult};
 use crate::numerics::cubic_table::CubicTable;
 use crate::numerics::dual::Real;
@@ -127,25 +128,68 @@ impl<T: Real> CondensingIsobar<T> {
 pub struct RefrigerantTable {
     name: String,
     table: CubicTable<COLUMNS>,
+    limits: Option<FluidLimits>,
+}
+
+/// Lowest temperature at which a fluid must be able to condense [degC]; the table of one that cannot ends below, near its
+/// critical point.
+const LEAST_CONDENSING_DEGC: f64 = 50.0;
+
+/// Columns that rise with saturation temperature, up to their values near the critical point.
+const RISING: [&str; 3] = ["pressure_pa", "vapour_density_0", "liquid_enthalpy_0"];
+
+/// Why there is no refrigerant of a name, as "must be ..."; `None` where there is one, or it is the path of a table.
+#[must_use]
+pub fn refusal(name: &str) -> Option<String> {
+    let known = library::names(REFRIGERANT);
+    if known.iter().any(|known| known.eq_ignore_ascii_case(name)) || name.ends_with(".csv") {
+        return None;
+    }
+    let others = format!("{}, or the path of a .csv file", known.join(", "));
+    Some(match supercritical_degc(name) {
+        Some(degc) => format!(
+            "must be a fluid that condenses below its critical point, which this one has at {degc} degC: supercritical \
+             cycles are not modelled; one of {others}"
+        ),
+        None => format!("must be one of {others}"),
+    })
 }
 
 impl RefrigerantTable {
     /// Loads a refrigerant by name, in upper or lower case, or by the path of its table.
     ///
     /// # Errors
-    /// No table of this name, or a file that is none.
+    /// No table of this name, a fluid that would be supercritical, or a file that is no table.
     pub fn load(name: &str) -> PlantResult<Self> {
+        Self::from_csv(name, &Self::text(name)?)
+    }
+
+    /// Critical point and usual limits of a refrigerant by name or path; `None` where its table gives none.
+    ///
+    /// # Errors
+    /// As [`RefrigerantTable::load`], as far as the header is concerned.
+    pub fn limits_of(name: &str) -> PlantResult<Option<FluidLimits>> {
+        FluidLimits::from_table(&file_word(name), &Self::text(name)?)
+    }
+
+    fn text(name: &str) -> PlantResult<String> {
+        if let Some(allowed) = refusal(name) {
+            let value = format!("`{name}`");
+            return Err(PlantError::InvalidArgument { what: "refrigerant".to_owned(), value, allowed });
+        }
         let same = |(known, _): &&(&'static str, _)| known.eq_ignore_ascii_case(name);
         let known = REFRIGERANT.files.iter().find(same).map_or(name, |(known, _)| known);
-        Self::from_csv(name, &library::text(REFRIGERANT, known)?)
+        library::text(REFRIGERANT, known)
     }
 
     /// Reads a table as `make_table.py` writes it.
     ///
     /// # Errors
-    /// Other columns, a field that is no number, a temperature grid that is not uniform.
+    /// Other columns, a field that is no number, a temperature grid that is not uniform, a property that does not rise with
+    /// temperature, a fluid that would be supercritical.
     pub fn from_csv(name: &str, text: &str) -> PlantResult<Self> {
-        let fault = |message: String| PlantError::Syntax { file: format!("refrigerant {name}"), message };
+        let limits = FluidLimits::from_table(&file_word(name), text)?;
+        let fault = |message: String| PlantError::Syntax { file: file_word(name), message };
         let mut lines =
             text.lines().enumerate().filter(|(_, line)| !line.starts_with('#') && !line.is_empty());
         let (_, header) = lines.next().ok_or_else(|| fault("the table is empty".to_owned()))?;
@@ -153,7 +197,7 @@ impl RefrigerantTable {
         if !header.split(',').map(str::trim).eq(expected()) {
             return Err(fault(format!("columns must be {}", expected().collect::<Vec<_>>().join(","))));
         }
-        let (mut grid, mut rows) = (Vec::new(), Vec::new());
+        let (mut grid, mut rows, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
         for (number, line) in lines {
             let bad = || fault(format!("line {} does not hold {} finite numbers", number + 1, COLUMNS + 1));
             let mut row = [0.0; COLUMNS + 1];
@@ -167,10 +211,25 @@ impl RefrigerantTable {
             }
             grid.push(row[0]);
             rows.push(std::array::from_fn(|k| row[k + 1]));
+            numbers.push(number + 1);
         }
+        check_rows(&rows, &numbers).map_err(fault)?;
         let table = CubicTable::new(&grid, &rows)
             .map_err(|_| fault("temperature_k must rise in equal steps, at least four rows".to_owned()))?;
-        Ok(Self { name: name.to_owned(), table })
+        let highest_degc = table.last() - ZERO_CELSIUS_K;
+        if highest_degc < LEAST_CONDENSING_DEGC {
+            return Err(fault(format!(
+                "temperature_k ends at {highest_degc:.1} degC, but must reach {LEAST_CONDENSING_DEGC} degC: a heat pump \
+                 with a fluid that cannot condense there is supercritical"
+            )));
+        }
+        Ok(Self { name: name.to_owned(), table, limits })
+    }
+
+    /// Critical point and usual limits, where the table gives them.
+    #[must_use]
+    pub fn limits(&self) -> Option<&FluidLimits> {
+        self.limits.as_ref()
     }
 
     /// Name of the refrigerant.
@@ -269,6 +328,49 @@ impl RefrigerantTable {
     }
 }
 
+/// What an error says of a table: that of a built-in fluid has no file of its own.
+fn file_word(name: &str) -> String {
+    format!("refrigerant {name}")
+}
+
+/// Checks what no fluid contradicts: positive pressures, densities and heats of evaporation; what must rise does.
+fn check_rows(rows: &[[f64; COLUMNS]], numbers: &[usize]) -> Result<(), String> {
+    let column = |name: &str| COLUMN_NAMES.iter().position(|known| *known == name).expect("a column");
+    let (dew, liquid, range) = (column("dew_enthalpy"), column("liquid_enthalpy_0"), column("isobar_range"));
+    for (place, (row, number)) in rows.iter().zip(numbers).enumerate() {
+        let fault = |name: &str, value: f64, allowed: &str| {
+            Err(format!("line {number}: `{name}` is {value}, but {allowed}"))
+        };
+        for name in ["pressure_pa", "vapour_density_0"] {
+            if row[column(name)] <= 0.0 {
+                return fault(name, row[column(name)], "must be above 0");
+            }
+        }
+        if row[dew] <= row[liquid] {
+            return fault(
+                "dew_enthalpy",
+                row[dew],
+                &format!("must be above liquid_enthalpy_0 ({})", row[liquid]),
+            );
+        }
+        if row[range] <= 0.0 {
+            return fault("isobar_range", row[range], "must be above 0");
+        }
+        let Some(before) = place.checked_sub(1).map(|last| &rows[last]) else { continue };
+        for name in RISING {
+            let (value, last) = (row[column(name)], before[column(name)]);
+            if value <= last {
+                return fault(
+                    name,
+                    value,
+                    &format!("must rise with temperature_k; the row before has {last}"),
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
 /// `c[0] + c[1] x + ...`
 #[inline]
 fn polynomial<T: Real>(coefficients: &[T], x: T) -> T {
@@ -292,6 +394,21 @@ mod tests {
         Ok(())
     }
 
+    /// The table of R290 without its header, with rows changed.
+    fn r290(change: impl Fn(&mut [f64], usize)) -> String {
+        let text = library::text(REFRIGERANT, "r290").expect("built in");
+        let mut lines: Vec<String> =
+            text.lines().filter(|line| !line.starts_with("#:")).map(str::to_owned).collect();
+        let first =
+            lines.iter().position(|line| line.starts_with(|c: char| c.is_ascii_digit())).expect("rows");
+        for (place, line) in lines[first..].iter_mut().enumerate() {
+            let mut row: Vec<f64> = line.split(',').map(|field| field.parse().expect("a number")).collect();
+            change(&mut row, place);
+            *line = row.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        }
+        lines.join("\n")
+    }
+
     #[test]
     fn faulty_tables_are_refused_with_the_reason() {
         let header = format!("temperature_k,{}", COLUMN_NAMES.join(","));
@@ -300,6 +417,31 @@ mod tests {
             ("temperature_k,b".to_owned(), "columns must be"),
             (format!("{header}\n1,2"), "line 2"),
             (header, "four rows"),
+            (
+                r290(|row, place| {
+                    if place == 40 {
+                        row[13] = 1e3
+                    }
+                }),
+                "line 53: `pressure_pa` is 1000, but must rise",
+            ),
+            (
+                r290(|row, place| {
+                    if place == 0 {
+                        row[5] = -1.0
+                    }
+                }),
+                "`vapour_density_0` is -1, but must be above 0",
+            ),
+            (
+                r290(|row, place| {
+                    if place == 3 {
+                        row[20] = 0.0
+                    }
+                }),
+                "`dew_enthalpy` is 0, but must be above liquid",
+            ),
+            (r290(|row, _| row[0] -= 60.0), "temperature_k ends at 29"),
         ] {
             let message = RefrigerantTable::from_csv("x", &text).expect_err("a faulty table").to_string();
             assert!(message.contains(reason), "{message}");
@@ -320,6 +462,13 @@ mod tests {
         assert_eq!(pressure_pa("R134A"), pressure_pa("r134a"));
         assert_ne!(pressure_pa("R134a"), pressure_pa(path));
         let message = RefrigerantTable::load("R744").expect_err("none").to_string();
-        assert!(["R744", "r134a", "r1234yf", ".csv"].iter().all(|part| message.contains(part)), "{message}");
+        assert!(
+            ["R744", "31 degC", "supercritical", "r134a", "r152a", ".csv"]
+                .iter()
+                .all(|part| message.contains(part)),
+            "{message}"
+        );
+        let message = RefrigerantTable::load("R999").expect_err("none").to_string();
+        assert!(["R999", "r134a", "r290", ".csv"].iter().all(|part| message.contains(part)), "{message}");
     }
 }
