@@ -7,6 +7,7 @@ use crate::architecture::layout::{
 };
 use crate::circuits::branches::{self, BranchTable, BranchTemperatures};
 use crate::circuits::exchangers::{self, ExchangerTable, Sides, Surroundings};
+use crate::circuits::front_ends::FrontAirs;
 use crate::circuits::refrigeration_cycle::RefrigerationCycle;
 use crate::circuits::refrigeration_loop::{
     CompressorAllowance, Limit, LoopBoundary, LoopResult, RefrigerationState,
@@ -244,7 +245,7 @@ impl Plant {
             refrigeration: RefrigerationState::parked(),
             condensing_pressure_pa: resting_pa.unwrap_or(0.0),
             entered_w: [0.0; LOOP_PLACES],
-            front_end_w: [0.0; FRONT_END_PLACES],
+            front_end_rise_k: [0.0; FRONT_END_PLACES],
             short_of_power: false,
             heater_power_w: 0.0,
             compressor_power_w: 0.0,
@@ -354,7 +355,7 @@ impl Plant {
         } else {
             self.substeps::<S>(sight, state, &period, record, tamper);
         }
-        self.end_period::<S>(shape, state, &record.flows);
+        self.end_period::<S>(shape, state, &period.front, &record.flows);
     }
 
     /// Lowest coolant and air flows while the battery cannot give what driving asks for.
@@ -399,7 +400,7 @@ impl Plant {
 
     /// What the next second must know of this one.
     #[inline(always)]
-    fn end_period<S: Shape>(&self, shape: &Indices<'_>, state: &mut State, flows: &Flows) {
+    fn end_period<S: Shape>(&self, shape: &Indices<'_>, state: &mut State, front: &FrontAirs, flows: &Flows) {
         state.time_s += CONTROL_PERIOD_S;
         state.heater_power_w = 0.0;
         each!(S::heaters(shape) => |place, heater| {
@@ -409,16 +410,21 @@ impl Plant {
         });
         state.compressor_power_w = flows[Flow::COMPRESSOR];
         state.pressure_pid.applied(&self.controls.pressure, state.compressor_power_w);
-        state.front_end_w = [0.0; FRONT_END_PLACES];
+        let mut front_end_w = [0.0; FRONT_END_PLACES];
         each!(S::branches(shape) => |_, branch| {
             if let BranchSide::Ambient(end) = branch.side
                 && shape.front_ends[end].shares_air
             {
                 let heat_w = flows[branch.flow];
-                state.front_end_w[end] += if branch.out_of_loop { heat_w } else { -heat_w };
+                front_end_w[end] += if branch.out_of_loop { heat_w } else { -heat_w };
             }
         });
-        exchangers::remember::<S>(shape, flows, &mut state.entered_w, &mut state.front_end_w);
+        exchangers::remember::<S>(shape, flows, &mut state.entered_w, &mut front_end_w);
+        each!(S::front_ends(shape) => |place, indices| {
+            if indices.shares_air {
+                state.front_end_rise_k[place] = front_end_w[place] / front.airs[place].rate_w_k;
+            }
+        });
     }
 
     /// One integration step: traction demand, constant loads, refrigerant loop, heaters, regeneration and battery, thermal
@@ -441,7 +447,7 @@ impl Plant {
         record.flows.clear(shape.flows);
         let flows = &mut record.flows;
         let mut drive = self.road(sight, state, &segment, flows);
-        self.constant_loads::<S>(sight, state, period, &segment, flows);
+        self.constant_loads::<S>(sight, period, flows);
 
         // Driving comes before thermal loads: they have what it leaves.
         let battery_k = state.temperatures_k[shape.battery.index()];
@@ -571,18 +577,11 @@ impl Plant {
 
     /// Loads and gains that nothing in the step changes.
     #[inline(always)]
-    fn constant_loads<S: Shape>(
-        &self,
-        sight: Sight<'_>,
-        state: &State,
-        period: &Period,
-        segment: &Segment,
-        flows: &mut Flows,
-    ) {
+    fn constant_loads<S: Shape>(&self, sight: Sight<'_>, period: &Period, flows: &mut Flows) {
         let Sight { vehicle, parameters, shape, disturbance } = sight;
         flows[Flow::AUXILIARY] = vehicle.controls.auxiliary_power_w;
         each!(S::loops(shape) => |place, circuit| { flows[circuit.pump_flow] = period.pumps_w[place]; });
-        flows[Flow::FAN] = fan_power_w::<S>(sight, state, period, segment.speed_m_s);
+        flows[Flow::FAN] = period.front.fan_w;
         each!(S::cabins(shape) => |place, cabin| {
             flows[cabin.blower_flow] = period.ventilation[place].blower_power_w;
             flows[cabin.solar_flow] = disturbance.solar_gain_w * parameters.solar_shares[place];
@@ -653,7 +652,7 @@ impl Plant {
                 branches_w_k: &period.branches_w_k,
                 front_end_air_k: &period.front_end_air_k,
                 ambient_k: sight.disturbance.air.temperature_k,
-                speed_m_s: segment.speed_m_s,
+                front: &period.front,
                 forecasts,
                 demand: &period.demand,
                 may_run: demand_w > 0.0 || state.refrigeration.compressor.running,
@@ -815,28 +814,6 @@ fn draw<S: Shape>(
     flows[Flow::CHEMICAL] = battery.chemical_power_w;
     flows[Flow::BATTERY_LOSS] = battery.loss_w;
     battery
-}
-
-/// Fans of the front-end exchangers that are at work: one for all that share their air [W].
-#[inline(always)]
-fn fan_power_w<S: Shape>(sight: Sight<'_>, state: &State, period: &Period, speed_m_s: f64) -> f64 {
-    let Sight { parameters, shape, .. } = sight;
-    let (mut power_w, mut shared_w): (f64, f64) = (0.0, 0.0);
-    each!(S::front_ends(shape) => |place, indices| {
-        let mut at_work = indices.refrigerant && exchangers::uses_front_end(shape, place, &period.demand);
-        each!(S::branches(shape) => |i, branch| {
-            if branch.side == BranchSide::Ambient(place) {
-                at_work |= state.connected[i];
-            }
-        });
-        let own_w = if at_work { parameters.front_ends[place].fan_power_w(speed_m_s) } else { 0.0 };
-        if indices.shares_air {
-            shared_w = shared_w.max(own_w);
-        } else {
-            power_w += own_w;
-        }
-    });
-    power_w + shared_w
 }
 
 #[inline(always)]

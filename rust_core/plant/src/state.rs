@@ -35,8 +35,8 @@ pub struct State {
     pub condensing_pressure_pa: f64,
     /// Heat that each loop's exchanger brought in the last step [W].
     pub entered_w: [f64; LOOP_PLACES],
-    /// Heat that each front-end exchanger gave to the air in the last step [W].
-    pub front_end_w: [f64; FRONT_END_PLACES],
+    /// Temperature rise of the air in each front-end exchanger that may be in front of others, in the last step [K].
+    pub front_end_rise_k: [f64; FRONT_END_PLACES],
     /// The battery had less in the last step than driving, pumps, blower and fan asked for.
     pub short_of_power: bool,
     /// Power of all heaters in the last step [W].

@@ -31,7 +31,7 @@ pub(crate) struct StepParameters {
     pub heater_gains: [ResetGains; HEATER_PLACES],
     /// Front-end exchangers.
     pub front_ends: [AmbientExchangerParameters; FRONT_END_PLACES],
-    /// Air that they share.
+    /// Air of each; the same for those that share it.
     pub air_streams: [AirStreamParameters; FRONT_END_PLACES],
     /// Conductance of each mass to ambient at rest, where nothing else is said [W/K].
     pub masses_w_k: [f64; MASS_PLACES],
@@ -61,7 +61,7 @@ impl StepParameters {
             heaters: padded(|place| vehicle.heaters.get(place).cloned()),
             heater_gains: padded(|place| vehicle.heaters.get(place).map(gains)),
             front_ends: padded(|place| vehicle.front_ends.get(place).cloned()),
-            air_streams: padded(|place| vehicle.air_streams.get(place).cloned().flatten()),
+            air_streams: padded(|place| vehicle.air_streams.get(place).cloned()),
             masses_w_k: padded(|place| store(place).map(|store| store.ambient_conductance_w_k)),
         }
     }

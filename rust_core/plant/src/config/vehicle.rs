@@ -32,6 +32,9 @@ use toml::{Table, Value};
 /// Architecture of a vehicle that names none.
 const DEFAULT_ARCHITECTURE: &str = "jeffs2019";
 
+/// Part of a front-end exchanger's section: its air, where it shares that with no other.
+const AIR: &str = "air";
+
 /// Conductances that an exchanger of the refrigerant loop may have [W/K].
 const EXCHANGER_UA_RANGE_W_K: (f64, f64) = (10.0, 10_000.0);
 
@@ -66,8 +69,8 @@ pub struct VehicleParameters {
     pub stores: Vec<ThermalMass>,
     /// Front-end exchangers.
     pub front_ends: Vec<AmbientExchangerParameters>,
-    /// Air that a front-end exchanger shares with others.
-    pub air_streams: Vec<Option<AirStreamParameters>>,
+    /// Air of each front-end exchanger; the same for those that share it.
+    pub air_streams: Vec<AirStreamParameters>,
     /// Plates by the position of their member.
     pub plates: Vec<Option<LiquidPlateParameters>>,
     /// Refrigerant loop.
@@ -207,8 +210,8 @@ impl Reader<'_> {
                 .map(|heater| self.section(&heater.name))
                 .collect::<PlantResult<_>>()?,
             stores: self.passive_masses(&layout)?,
-            front_ends: self.each(&layout, MemberKind::FrontEnd)?,
             air_streams: self.air_streams(&layout)?,
+            front_ends: self.each(&layout, MemberKind::FrontEnd)?,
             plates: self.plates(&layout)?,
             refrigeration,
             exchanger_ua_w_k,
@@ -346,19 +349,34 @@ impl Reader<'_> {
         Ok(cabins)
     }
 
-    fn air_streams(&mut self, layout: &Layout) -> PlantResult<Vec<Option<AirStreamParameters>>> {
+    /// Air of each front-end exchanger: in the section of the stream that it shares, or in a part `air` of its own section.
+    fn air_streams(&mut self, layout: &Layout) -> PlantResult<Vec<AirStreamParameters>> {
         let mut read: Vec<(String, AirStreamParameters)> = Vec::new();
         let mut streams = Vec::with_capacity(layout.front_ends.len());
         for front_end in &layout.front_ends {
+            let section = &layout.members[front_end.member].section;
+            let parts = self.table.get_mut(section).and_then(Value::as_table_mut);
+            let own = parts.and_then(|parts| parts.remove(AIR));
+            let path = format!("{section}.{AIR}");
             let Some(name) = &front_end.stream else {
-                streams.push(None);
+                let message = format!("`{path}` is missing");
+                let own = own.ok_or_else(|| PlantError::Syntax { file: self.file.to_owned(), message })?;
+                let air: AirStreamParameters = deserialized(self.file, &path, own)?;
+                air.validate().map_err(|violation| violation.within(&path).in_file(self.file))?;
+                streams.push(air);
                 continue;
             };
+            // What only the base has is of no use here.
+            let given = self.own.get(section).and_then(|section| section.get(AIR));
+            if given.is_some() {
+                let allowed = format!("must stand in `{name}`, the air that `{section}` shares");
+                return Err(Violation::new(path, "given", allowed).in_file(self.file));
+            }
             if !read.iter().any(|(known, _)| known == name) {
                 let parameters = self.section(name)?;
                 read.push((name.clone(), parameters));
             }
-            streams.push(read.iter().find(|(known, _)| known == name).map(|(_, stream)| stream.clone()));
+            streams.extend(read.iter().find(|(known, _)| known == name).map(|(_, stream)| stream.clone()));
         }
         Ok(streams)
     }
@@ -499,7 +517,6 @@ impl VehicleParameters {
                 return Err(Violation::new(format!("{}.{key}", circuit.name), "missing", allowed));
             }
         }
-        self.check_air_streams()?;
         let battery = &self.battery;
         for (section, limit) in [
             ("battery.charge_limit", &battery.charge_limit),
@@ -521,33 +538,6 @@ impl VehicleParameters {
         for branch in self.layout.branches.iter().filter(|branch| matches!(branch.side, BranchSide::Plate(_)))
         {
             debug_assert!(self.plates[branch.member].is_some(), "each plate has a section");
-        }
-        Ok(())
-    }
-
-    /// Shared air takes up what its exchangers pass: with less of it, it would leave warmer than the coolant.
-    fn check_air_streams(&self) -> Result<(), Violation> {
-        let streams = self.layout.front_ends.iter().zip(&self.front_ends).zip(&self.air_streams);
-        for ((layout, front_end), stream) in streams {
-            let (Some(stream), Some(section)) = (stream, &layout.stream) else { continue };
-            let name = &self.layout.members[layout.member].name;
-            for (key, rate, largest) in [
-                (
-                    "capacity_rate_w_k",
-                    stream.capacity_rate_w_k,
-                    front_end.radiator_ua_w_k.max(front_end.source_ua_w_k),
-                ),
-                (
-                    "capacity_rate_per_speed_w_s_k_m",
-                    stream.capacity_rate_per_speed_w_s_k_m,
-                    front_end.radiator_ua_per_speed_w_s_k_m.max(front_end.source_ua_per_speed_w_s_k_m),
-                ),
-            ] {
-                if rate < largest {
-                    let allowed = format!("must be at least the conductance of `{name}` ({largest})");
-                    return Err(Violation::new(format!("{section}.{key}"), rate, allowed));
-                }
-            }
         }
         Ok(())
     }

@@ -7,6 +7,7 @@ use hp_plant::circuits::refrigeration_cycle::RefrigerationCycle;
 use hp_plant::components::cabin::Ventilation;
 use hp_plant::components::heat_exchanger::inlet_conductance_w_k;
 use hp_plant::components::refrigerant_exchanger::{CondenserStreams, EvaporatorStreams};
+use hp_plant::flows::Flow;
 use hp_plant::numerics::thermal_network::Node;
 
 /// Rounding of heat flows that are worked out in another order [W].
@@ -87,20 +88,29 @@ pub fn cabin_air(step: &Step<'_>, cabin: usize, state: &hp_plant::state::State) 
     (air, fresh * step.disturbance.air.temperature_k + recirculated * cabin_k)
 }
 
-/// Air at a front-end exchanger: ambient, and what the exchangers before it gave off in the second before [K].
+/// Air at a front-end exchanger: ambient, warmed in the second before by the exchangers before it [K].
 pub fn front_end_air_k(step: &Step<'_>, front_end: usize) -> f64 {
     let vehicle = &step.plant.vehicle;
     let mut air_k = step.disturbance.air.temperature_k;
-    if let Some(stream) = &vehicle.air_streams[front_end] {
-        let speed_m_s = step.disturbance.mean_speed_m_s();
-        let rate_w_k = stream.capacity_rate_w_k + stream.capacity_rate_per_speed_w_s_k_m * speed_m_s;
-        let mut before = vehicle.layout.front_ends[front_end].behind;
-        while let Some(other) = before {
-            air_k += step.before.front_end_w[other] / rate_w_k;
-            before = vehicle.layout.front_ends[other].behind;
-        }
+    let mut before = vehicle.layout.front_ends[front_end].behind;
+    while let Some(other) = before {
+        air_k += step.before.front_end_rise_k[other];
+        before = vehicle.layout.front_ends[other].behind;
     }
     air_k
+}
+
+/// Air flow of a front-end exchanger [kg/s], by the power of the fan; none where several fans are at work.
+pub fn front_end_flow_kg_s(step: &Step<'_>, front_end: usize) -> Option<f64> {
+    let vehicle = &step.plant.vehicle;
+    let stream = &vehicle.air_streams[front_end];
+    let face_m_s = stream.ram_air_share * step.disturbance.mean_speed_m_s();
+    let ram_m3_s = stream.core_area_m2 * face_m_s.hypot(0.1);
+    let fan_w = step.record.flows[Flow::FAN];
+    let fans = vehicle.layout.front_ends.iter().filter(|end| end.behind.is_none()).count();
+    let level = if fan_w > 0.0 { (fan_w / stream.fan_power_w).cbrt() } else { 0.0 };
+    let flow_m3_s = ram_m3_s.hypot(level * stream.fan_air_flow_m3_s);
+    (fans == 1 || fan_w == 0.0).then_some(flow_m3_s * step.disturbance.air.density_kg_m3)
 }
 
 /// No branch carries heat from cold to hot, by the temperatures at the end of the step.
@@ -181,12 +191,12 @@ fn check_supply_air(step: &Step<'_>) {
     }
 }
 
-/// Coolant or air at an exchanger of the refrigerant loop: inlet [K], capacity rate and conductance [W/K].
-pub fn stream(step: &Step<'_>, place: usize) -> (f64, f64, f64) {
+/// Coolant or air at an exchanger of the refrigerant loop: inlet [K], capacity rate and conductance [W/K], where they are known.
+pub fn stream(step: &Step<'_>, place: usize) -> Option<(f64, f64, f64)> {
     let vehicle = &step.plant.vehicle;
     let exchanger = &vehicle.layout.exchangers[place];
     let ua_w_k = vehicle.exchanger_ua_w_k[place];
-    match exchanger.side {
+    Some(match exchanger.side {
         ExchangerSide::Loop(circuit) => {
             let flow_kg_s = step.after.pumps[circuit].flow_kg_s;
             let rate_w_k = flow_kg_s * vehicle.loops[circuit].circuit.coolant_specific_heat_j_kg_k;
@@ -199,15 +209,12 @@ pub fn stream(step: &Step<'_>, place: usize) -> (f64, f64, f64) {
             (inlet_k, air.supply_rate_w_k, inlet_conductance_w_k(air.supply_rate_w_k, ua_w_k))
         }
         ExchangerSide::FrontEnd(front_end) => {
-            let own = &vehicle.front_ends[front_end];
-            let speed_m_s = 0.5 * (step.disturbance.start_speed_m_s + step.record.end_speed_m_s);
-            let ua_w_k = match exchanger.level {
-                Level::Condensing => own.radiator_ua_w_k + own.radiator_ua_per_speed_w_s_k_m * speed_m_s,
-                Level::Evaporating => own.source_ua_w_k + own.source_ua_per_speed_w_s_k_m * speed_m_s,
-            };
-            (front_end_air_k(step, front_end), f64::INFINITY, ua_w_k)
+            let flow_kg_s = front_end_flow_kg_s(step, front_end)?;
+            let (rate_w_k, ua_w_k) =
+                (1006.0 * flow_kg_s, vehicle.front_ends[front_end].ua_w_k * flow_kg_s.powf(0.6));
+            (front_end_air_k(step, front_end), rate_w_k, inlet_conductance_w_k(rate_w_k, ua_w_k))
         }
-    }
+    })
 }
 
 /// Each exchanger carries `G |T - inlet|` or nothing, never backwards, and no stream crosses in any of them.
@@ -225,7 +232,7 @@ fn check_exchangers(step: &Step<'_>) {
         if heat_w == 0.0 {
             continue;
         }
-        let (inlet_k, rate_w_k, conductance_w_k) = stream(step, place);
+        let Some((inlet_k, rate_w_k, conductance_w_k)) = stream(step, place) else { continue };
         let room_k = if hot {
             result.condensing_temperature_k - inlet_k
         } else {
