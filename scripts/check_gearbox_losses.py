@@ -2,9 +2,10 @@
 
     python scripts/check_gearbox_losses.py [VEHICLE]      # a vehicle's file with its own [transmission]
 
-Bearings: load-independent moment of Palmgren, 1e-7 f0 (nu n)^(2/3) d^3 N mm. Seals: ISO/TR 14179-2. Churning of the final gear in
-the sump: Changenet and Velex 2007 (doi 10.1115/1.2403727), low Froude numbers. Viscosity: ASTM D341 through two points. The
-reducer's dimensions are those of a usual car's, assumed: ratios 9 and 3.1, a wheel of 0.33 m, six bearings, three seals.
+Bearings: load-independent moment of Palmgren, 1e-7 f0 (nu n)^(2/3) d^3 N mm. Seals: ISO/TR 14179-2.
+Churning of the final gear in the sump: Changenet and Velex 2007, low Froude numbers. Viscosity: ASTM D341
+through two points. The reducer's dimensions are those of a usual car's, assumed: ratios 9 and 3.1, a wheel
+of 0.33 m, six bearings, three seals.
 """
 
 import math
@@ -57,13 +58,16 @@ def churning_loss_w(viscosity: float, wheel_rpm: float) -> float:
     radius_m, immersion_m, width_m = GEAR_M
     speed = wheel_rpm * math.pi / 30.0
     angle = math.acos(1.0 - immersion_m / radius_m)
-    wetted_m2 = 2.0 * radius_m**2 * (angle - math.sin(angle) * math.cos(angle)) + 2.0 * width_m * radius_m * angle
+    wetted_m2 = (
+        2.0 * radius_m**2 * (angle - math.sin(angle) * math.cos(angle)) + 2.0 * width_m * radius_m * angle
+    )
     reynolds = speed * radius_m**2 / (viscosity * 1e-6)
     froude = speed**2 * radius_m / 9.81
     diameter_m = 2.0 * radius_m
     moment = 1.366 * (immersion_m / diameter_m) ** 0.45 * (OIL_M3 / diameter_m**3) ** 0.1
     moment *= froude**-0.6 * reynolds**-0.21
-    return 0.5 * OIL_DENSITY_KG_M3 * speed**3 * radius_m**3 * wetted_m2 * moment
+    loss_w: float = 0.5 * OIL_DENSITY_KG_M3 * speed**3 * radius_m**3 * wetted_m2 * moment
+    return loss_w
 
 
 def force_n(fluid: tuple[float, float], degc: float) -> float:
@@ -71,7 +75,9 @@ def force_n(fluid: tuple[float, float], degc: float) -> float:
     speed_m_s = SPEED_KM_H / 3.6
     rpm = speed_m_s / WHEEL_RADIUS_M * 30.0 / math.pi
     viscosity = viscosity_mm2_s(fluid, degc)
-    parts_w = bearing_loss_w(viscosity, rpm) + seal_loss_w(fluid[0], degc, rpm) + churning_loss_w(viscosity, rpm)
+    parts_w = (
+        bearing_loss_w(viscosity, rpm) + seal_loss_w(fluid[0], degc, rpm) + churning_loss_w(viscosity, rpm)
+    )
     return parts_w / speed_m_s
 
 
