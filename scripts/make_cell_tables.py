@@ -2,11 +2,13 @@
 
     python scripts/make_cell_tables.py configs/vehicles/jeffs2019.toml
 
-Takes the circuit tables of that file, their dependence on state of charge included, and gives every row the factor with which the
-resistance over 10 s at half charge, relative to 25 degC, becomes the mean of two cells: the published measurement of one, the
-published model of another. Time constants stay. Where the tables already do so, they come out as they are.
+Takes the circuit tables of that file, their dependence on state of charge included, and gives every row the
+factor with which the resistance over 10 s at half charge, relative to 25 degC, becomes the geometric mean
+of two cells: the published measurement of one, the published model of another. Time constants stay. Tables
+that already do so come out as they are.
 """
 
+import itertools
 import math
 import sys
 import tomllib
@@ -16,7 +18,8 @@ PULSE_S = 10.0
 WARM_DEGC = 25.0
 
 # R(10 s) at half charge [mohm Ah]; both cells: resistance times capacity.
-# Panasonic 18650PF, 2.9 Ah, pulses at 1C (Kollmeyer, doi 10.17632/wykht8y7tg): 37.3, 52.0, 79.7, 129.8, 217.0 mohm.
+# Panasonic 18650PF, 2.9 Ah, pulses at 1C (Kollmeyer, doi 10.17632/wykht8y7tg):
+# 37.3, 52.0, 79.7, 129.8, 217.0 mohm.
 MEASURED = {25.6: 108.2, 10.8: 150.8, 0.3: 231.1, -9.9: 376.4, -20.1: 629.3}
 # Kokam, parameter set Ecker2015 of PyBaMM 26.10.1.1, Doyle-Fuller-Newman model, isothermal.
 MODELLED = {40.0: 21.7, 25.0: 42.1, 10.0: 90.1, 0.0: 145.0, -10.0: 212.0, -20.0: 285.0, -30.0: 359.0}
@@ -25,11 +28,14 @@ Table = list[list[float]]
 
 
 def ratio(cell: dict[float, float], degc: float) -> float:
-    """Resistance relative to 25 degC; its logarithm is linear between the points, and beyond them as in the last piece."""
+    """Resistance relative to 25 degC.
+
+    Its logarithm is linear in the inverse temperature between the points; beyond them as in the last piece.
+    """
     points = sorted((1.0 / (temperature + 273.15), math.log(value)) for temperature, value in cell.items())
 
     def logarithm(inverse_k: float) -> float:
-        pieces = list(zip(points, points[1:], strict=False))
+        pieces = list(itertools.pairwise(points))
         low, high = next((piece for piece in pieces if inverse_k <= piece[1][0]), pieces[-1])
         return low[1] + (inverse_k - low[0]) / (high[0] - low[0]) * (high[1] - low[1])
 
@@ -87,7 +93,9 @@ def main() -> None:
     print(f"temperature_degc = {temperatures}")
     print(f"state_of_charge = {circuit['state_of_charge']}")
     for name in ("series_resistance_ohm", "polarisation_resistance_ohm"):
-        table = [[value * factor for value in row] for row, factor in zip(circuit[name], factors, strict=True)]
+        table = [
+            [value * factor for value in row] for row, factor in zip(circuit[name], factors, strict=True)
+        ]
         print_table(name, table, temperatures)
     name = "polarisation_capacitance_f"
     table = [[value / factor for value in row] for row, factor in zip(circuit[name], factors, strict=True)]

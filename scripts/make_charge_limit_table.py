@@ -1,13 +1,14 @@
-"""Largest charging rates that keep a graphite anode at or above 0 V, as tables for `[battery.charge_limit]` of a vehicle.
+"""Largest charging rates that keep a graphite anode at or above 0 V: tables for `[battery.charge_limit]`.
 
-Doyle-Fuller-Newman model of PyBaMM with the cell of O'Kane et al. 2022 (LG M50, 5 Ah, doi 10.1039/D2CP00417H), isothermal; anode
-potential: that of the graphite against the electrolyte at the separator, where lithium plates first. Below -10 degC the cell's
-Arrhenius laws are extrapolated.
+Doyle-Fuller-Newman model of PyBaMM with the cell of O'Kane et al. 2022 (LG M50, 5 Ah, doi
+10.1039/D2CP00417H), isothermal. The anode potential is that of the graphite against the electrolyte at the
+separator, where lithium plates first. Below -10 degC the cell's Arrhenius laws are extrapolated.
 
-    uv run --no-project --with pybamm==26.10.1.1 scripts/make_charge_limit_table.py     # both tables, about 4 minutes
+    uv run --no-project --with pybamm==26.10.1.1 scripts/make_charge_limit_table.py
 
-With `--check VEHICLE` it drives the recuperation of a cycle through the cell as the plant's law allows it with the table of that
-vehicle's file, at all decelerations, and prints the lowest anode potential.
+That takes about 4 minutes. With `--check VEHICLE` it drives the recuperation of a cycle through the cell as
+the plant's law allows it with the table of that vehicle's file, at all decelerations, and prints the lowest
+potential.
 """
 
 import argparse
@@ -52,9 +53,12 @@ class Cell:
         sites_mol = share * values["Negative electrode thickness [m]"] * area_m2 * self.largest[0]
         self.capacity_ah = float((x_100 - x_0) * sites_mol * pybamm.constants.F.value / 3600.0)
         given = ["Ambient temperature [K]", "Initial temperature [K]"]
-        given += [f"Initial concentration in {electrode} electrode [mol.m-3]" for electrode in ("negative", "positive")]
+        given += [
+            f"Initial concentration in {electrode} electrode [mol.m-3]"
+            for electrode in ("negative", "positive")
+        ]
         # Voltage limits are the vehicle's own matter.
-        values.update({key: "[input]" for key in given})
+        values.update(dict.fromkeys(given, "[input]"))
         values.update({"Upper voltage cut-off [V]": 6.0, "Lower voltage cut-off [V]": 0.5})
         self.values = values
 
@@ -82,9 +86,14 @@ class Cell:
 
 
 def anode_potential_v(
-    cell: Cell, charge: pybamm.Simulation, degc: float, state_of_charge: float, rate_per_h: float, duration_s: float
+    cell: Cell,
+    charge: pybamm.Simulation,
+    at: tuple[float, float],
+    rate_per_h: float,
+    duration_s: float,
 ) -> float:
-    """Anode potential where charging at a constant rate from rest, for a time or from empty, ends at a state of charge."""
+    """Anode potential where charging at a constant rate from rest ends at a state of charge."""
+    degc, state_of_charge = at
     current_a = rate_per_h * cell.nominal_ah
     duration_s = min(duration_s, 3600.0 * state_of_charge * cell.capacity_ah / current_a)
     start = state_of_charge - current_a * duration_s / 3600.0 / cell.capacity_ah
@@ -98,7 +107,7 @@ def anode_potential_v(
 
 
 def largest_rate_per_h(potential_v: Callable[[float], float]) -> float:
-    """Largest rate with a potential of at least 0 V, within half a percent; held at the largest rate of the table."""
+    """Largest rate with a potential of at least 0 V, within half a percent; at most that of the table."""
     if potential_v(LARGEST_RATE_PER_H) >= 0.0:
         return LARGEST_RATE_PER_H
     low, high = SMALLEST_RATE_PER_H, LARGEST_RATE_PER_H
@@ -111,7 +120,7 @@ def largest_rate_per_h(potential_v: Callable[[float], float]) -> float:
 
 
 def rising(rows: Table) -> Table:
-    """The table rounded, no value above that of a warmer cell: what is left of the search's tolerance goes."""
+    """The table rounded, no value above that of a warmer cell: the search's tolerance goes."""
     for warmer, colder in zip(rows[::-1], rows[-2::-1], strict=False):
         for column in range(len(STATES_OF_CHARGE)):
             colder[column] = min(colder[column], warmer[column])
@@ -126,7 +135,7 @@ def tables(cell: Cell) -> tuple[Table, Table]:
         return [
             [
                 largest_rate_per_h(
-                    lambda rate, t=degc, s=soc: anode_potential_v(cell, charge, t, s, rate, duration_s)  # type: ignore[misc]
+                    lambda rate, at=(degc, soc): anode_potential_v(cell, charge, at, rate, duration_s)  # type: ignore[misc]
                 )
                 for soc in STATES_OF_CHARGE
             ]
@@ -149,7 +158,7 @@ def print_tables(pulse: Table, continuous: Table) -> None:
 
 
 class Law:
-    """The plant's law (`rust_core/plant/src/components/rate_limit.rs`) with the table of a vehicle's file, for the table's own cell."""
+    """The plant's law (`components/rate_limit.rs`) with a vehicle's table, for the table's own cell."""
 
     def __init__(self, file: Path) -> None:
         battery = tomllib.loads(file.read_text())["battery"]
@@ -181,7 +190,7 @@ class Law:
 
 
 def check(cell: Cell, file: Path) -> None:
-    """Lowest anode potential where every deceleration of a cycle charges as much as the plant's law allows."""
+    """Lowest anode potential where every deceleration charges as much as the plant's law allows."""
     with (ROOT / "configs/cycles/wltc-class3b.csv").open() as lines:
         rows = list(csv.reader(line for line in lines if not line.startswith("#")))
     braking = np.diff([float(row[-1]) / 3.6 for row in rows[1:]]) < -0.2
@@ -202,7 +211,9 @@ def check(cell: Cell, file: Path) -> None:
 def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--check", type=Path, metavar="VEHICLE", help="drive the law of that file through the cell")
+    parser.add_argument(
+        "--check", type=Path, metavar="VEHICLE", help="drive the law of that file through the cell"
+    )
     arguments = parser.parse_args()
     if arguments.check:
         check(Cell(), arguments.check)

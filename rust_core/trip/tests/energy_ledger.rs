@@ -87,6 +87,16 @@ fn ledger_closes_streams_never_cross_and_limits_hold_in_a_thousand_random_scenar
     }
 }
 
+/// Published values of cold cells, tyres and oil: the battery's rate limits then remember the current.
+#[test]
+fn ledger_closes_with_a_battery_tyres_and_oil_as_cold_as_real_ones() {
+    let vehicle = concat!(env!("CARGO_MANIFEST_DIR"), "/../plant/tests/data/cold.toml");
+    let plant = Plant::load(vehicle, &[]).expect("it loads");
+    random_scenarios(&plant, RANDOM_SCENARIOS).par_iter().for_each(|scenario| {
+        scenario.drive(&plant, |_, step| physics::check(step));
+    });
+}
+
 /// A moment in which some of the flows are at work.
 struct Moment {
     experiment: Experiment,
