@@ -530,7 +530,13 @@ mod tests {
                 record: run.record.as_ref(),
                 disturbance: &disturbance,
             };
-            let look = Look { view, experiment: &experiment, asked: &asked, steps: run.steps, behind_m: run.pace.behind_m };
+            let look = Look {
+                view,
+                experiment: &experiment,
+                asked: &asked,
+                steps: run.steps,
+                behind_m: run.pace.behind_m,
+            };
             let mut shown = vec![0.0; table.rows().len()];
             table.write(&fitted, &look, None::<fn() -> f64>, &mut shown, &mut Clipped::default());
             signals.clear();

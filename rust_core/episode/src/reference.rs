@@ -170,7 +170,8 @@ mod tests {
             ("ours/commute-minus5", &[]),
             ("jeffs2019/case1-1", &weak),
         ] {
-            let overrides: Vec<_> = overrides.iter().map(|text| Override::parse(text).expect("valid")).collect();
+            let overrides: Vec<_> =
+                overrides.iter().map(|text| Override::parse(text).expect("valid")).collect();
             let experiment = Experiment::load(scenario, None, &overrides).expect("built in");
             let plant = &experiment.plant;
             let layout = plant.layout();
@@ -199,7 +200,10 @@ mod tests {
             }
             assert!(trip.arrived(&experiment));
             assert_eq!(step > experiment.cycle.duration_s(), !overrides.is_empty(), "{scenario}");
-            assert_eq!((trip.step(&experiment, &conditions), trip.finish(&experiment, &conditions)), (0.0, 0.0));
+            assert_eq!(
+                (trip.step(&experiment, &conditions), trip.finish(&experiment, &conditions)),
+                (0.0, 0.0)
+            );
         }
     }
 }

@@ -377,8 +377,13 @@ mod tests {
             PART_NAMES,
             ["reward_energy", "reward_discomfort", "reward_heat_left", "reward_penalties"]
         );
-        let terms =
-            Terms { stranded: 1.0, delay_h: 0.1, protection_trips: 2.0, chemical_energy_kwh: 3.0, ..Terms::default() };
+        let terms = Terms {
+            stranded: 1.0,
+            delay_h: 0.1,
+            protection_trips: 2.0,
+            chemical_energy_kwh: 3.0,
+            ..Terms::default()
+        };
         let weights: RewardParameters =
             hp_plant::config::library::load(crate::kinds::REWARD, "durable", &[]).expect("built in");
         let expected = -weights.protection_trip * 2.0 - weights.delay_per_h * 0.1 - weights.stranded;
