@@ -30,7 +30,7 @@ class Trajectory:
     Attributes:
         scenario: Name or path of the scenario.
         controller: Name of the controller.
-        end_reason: `arrived`, `unserved_energy` or `battery_empty`.
+        end_reason: `arrived`, `battery_empty`, `immobile` or `late`.
         summary: Totals by name; a name ends with its unit. NaN, in JSON null, where one does not exist,
             as energy per distance of a trip of 0 km.
         limits: Limits that the run is judged by.

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 # What the table shows of the totals, where the vehicle has them; `--json` has all of them.
 GROUPS: Final = {
-    "Trip": ("duration_s", "distance_km", "energy_kwh", "energy_kwh_per_100_km"),
+    "Trip": ("duration_s", "delay_s", "distance_km", "energy_kwh", "energy_kwh_per_100_km"),
     "Battery": ("final_soc_pct", "final_charge_soc_pct", "mean_voltage_v", "battery_loss_energy_kwh"),
     "Comfort": ("time_to_comfort_s", "comfortable_share", "discomfort_k"),
     "Electrical energy": (

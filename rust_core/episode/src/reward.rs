@@ -33,6 +33,8 @@ struct Second<'a> {
     chemical_w: f64,
     reference_j: f64,
     occupied: bool,
+    /// Beyond the end of the cycle.
+    late: bool,
     end: Option<EndReason>,
 }
 
@@ -165,6 +167,13 @@ terms! {
         costs "reward_penalties" |t, w| -w.protection_trip * t.protection_trips;
         /// For each stop of the compressor that a protection forces.
         protection_trip in 0.0 .. 1000.0;
+    /// Time beyond the end of the cycle
+    delay_h ["h"]
+        adds |s| if s.late { HOURS } else { 0.0 };
+        tells "delay_s" |t| (t.delay_h * SECONDS_PER_HOUR).round();
+        costs "reward_penalties" |t, w| -w.delay_per_h * t.delay_h;
+        /// For an hour beyond the end of the cycle. More than what slower driving saves, or a weak battery would pay.
+        delay_per_h in 0.0 .. 1000000.0;
     /// 1 if the trip ended before arrival
     stranded ["-"]
         adds |s| f64::from(u8::from(s.end.is_some_and(|reason| reason != EndReason::Arrived)));
@@ -268,10 +277,10 @@ pub struct Meter {
 impl Meter {
     /// Before the first second.
     #[must_use]
-    pub fn start(state: &State) -> Self {
+    pub fn start(experiment: &Experiment, state: &State) -> Self {
         Self {
             total: Terms::default(),
-            reference: ReferenceTrip::start(state.battery),
+            reference: ReferenceTrip::start(experiment, state.battery),
             trips: state.refrigeration.compressor.protection_trips,
         }
     }
@@ -286,7 +295,10 @@ impl Meter {
         disturbance: &Disturbance,
         end: Option<EndReason>,
     ) -> Terms {
-        let reference_j = self.reference.step(&experiment.plant, conditions, disturbance);
+        let mut reference_j = self.reference.step(experiment, conditions);
+        if end == Some(EndReason::Arrived) && !self.reference.arrived(experiment) {
+            reference_j += self.reference.finish(experiment, conditions);
+        }
         let added = Terms::of(&Second {
             experiment,
             weights,
@@ -295,6 +307,7 @@ impl Meter {
             chemical_w: run.record.as_ref().map_or(0.0, |record| record.flows[Flow::CHEMICAL]),
             reference_j,
             occupied: disturbance.occupants > 0.0,
+            late: run.steps > experiment.cycle.duration_s(),
             end,
         });
         self.trips = run.state.refrigeration.compressor.protection_trips;
@@ -364,11 +377,16 @@ mod tests {
             PART_NAMES,
             ["reward_energy", "reward_discomfort", "reward_heat_left", "reward_penalties"]
         );
-        let terms =
-            Terms { stranded: 1.0, protection_trips: 2.0, chemical_energy_kwh: 3.0, ..Terms::default() };
+        let terms = Terms {
+            stranded: 1.0,
+            delay_h: 0.1,
+            protection_trips: 2.0,
+            chemical_energy_kwh: 3.0,
+            ..Terms::default()
+        };
         let weights: RewardParameters =
             hp_plant::config::library::load(crate::kinds::REWARD, "durable", &[]).expect("built in");
-        let expected = -weights.protection_trip * 2.0 - weights.stranded;
+        let expected = -weights.protection_trip * 2.0 - weights.delay_per_h * 0.1 - weights.stranded;
         assert_eq!(terms.reward(&weights), [-weights.energy_per_kwh * 3.0, 0.0, 0.0, expected]);
         let names: Vec<&str> = terms.kpis(&weights).into_iter().map(|(name, _)| name).collect();
         assert_eq!(
@@ -381,7 +399,8 @@ mod tests {
                 "discomfort_k",
                 "heat_left_kwh",
                 "battery_window_k_h",
-                "protection_trips"
+                "protection_trips",
+                "delay_s"
             ]
         );
     }

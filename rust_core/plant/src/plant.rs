@@ -13,8 +13,8 @@ use crate::circuits::refrigeration_loop::{
     CompressorAllowance, Limit, LoopBoundary, LoopResult, RefrigerationState,
 };
 use crate::command::{ActuatorRanges, Command, Demand};
-use crate::components::body::RoadLoad;
 use crate::components::battery::{Battery, BatteryState, BatteryStep, CircuitStep, PowerLimits};
+use crate::components::body::RoadLoad;
 use crate::components::exhaust_recovery::{ExhaustRecovery, RecoveryTemperatures};
 use crate::components::pid::ResetPid;
 use crate::components::powertrain::{Powertrain, PowertrainFlow};
@@ -528,11 +528,8 @@ impl Plant {
         segment: &Segment,
         supply: TractionSupply,
     ) -> Segment {
-        let ending = |end_m_s: f64| Segment {
-            end_m_s,
-            speed_m_s: 0.5 * (segment.start_m_s + end_m_s),
-            ..*segment
-        };
+        let ending =
+            |end_m_s: f64| Segment { end_m_s, speed_m_s: 0.5 * (segment.start_m_s + end_m_s), ..*segment };
         ending(reachable_speed_m_s(segment.end_m_s, supply, |end_m_s| {
             let (road, powertrain) = self.pull(sight, state, &ending(end_m_s));
             (road.wheel_power_w(), powertrain)

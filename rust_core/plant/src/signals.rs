@@ -179,9 +179,8 @@ impl SignalTable {
     }
 
     fn add_motion(&mut self) {
-        let speed = |v: &View<'_>| {
-            v.record.map_or(v.disturbance.start_speed_m_s, |record| record.end_speed_m_s)
-        };
+        let speed =
+            |v: &View<'_>| v.record.map_or(v.disturbance.start_speed_m_s, |record| record.end_speed_m_s);
         self.rows.extend([
             function("time_s", "s", "time since the start", |v| v.state.time_s)
                 .within(0.0, 7200.0)

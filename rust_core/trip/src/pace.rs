@@ -106,7 +106,8 @@ fn cruising_m_s(cycle: &DriveCycle) -> f64 {
     let speeds_m_s = cycle.speeds_m_s();
     let mean_m_s = |part: &[f64]| {
         let moving = part.iter().filter(|&&speed_m_s| speed_m_s > STANDSTILL_SPEED_M_S);
-        let (count, sum_m_s) = moving.fold((0.0, 0.0), |(count, sum), speed_m_s| (count + 1.0, sum + speed_m_s));
+        let (count, sum_m_s) =
+            moving.fold((0.0, 0.0), |(count, sum), speed_m_s| (count + 1.0, sum + speed_m_s));
         (count > 0.0).then(|| sum_m_s / count)
     };
     let last = &speeds_m_s[speeds_m_s.len().saturating_sub(LAST_PART_S)..];

@@ -62,7 +62,10 @@ fn driven(experiment: &Experiment) -> (Run, EndReason) {
         if limited {
             let heat_w = record.flows[Flow::COMPRESSOR]
                 + experiment.plant.layout().heaters.iter().map(|h| record.flows[h.flow]).sum::<f64>();
-            assert!(heat_w < 1.0, "{heat_w} W of heat while the battery limits traction, from {before_m_s} m/s");
+            assert!(
+                heat_w < 1.0,
+                "{heat_w} W of heat while the battery limits traction, from {before_m_s} m/s"
+            );
         }
         if let Some(reason) = end {
             return (run, reason);
@@ -92,7 +95,10 @@ fn us06_at_minus_seven_degrees_is_driven_to_its_end_at_most_30_s_late() {
         let (run, reason) = driven(&experiment);
         assert_whole_way(&experiment, &run, reason);
         let delay_s = run.steps - experiment.cycle.duration_s();
-        println!("US06 at -7 degC: {delay_s} s late, {:.0} m behind at most", total(&experiment, &run, "furthest_behind_m"));
+        println!(
+            "US06 at -7 degC: {delay_s} s late, {:.0} m behind at most",
+            total(&experiment, &run, "furthest_behind_m")
+        );
         assert!(delay_s <= 30, "{delay_s} s late");
     }
 }
@@ -146,7 +152,10 @@ fn a_snapshot_taken_while_behind_goes_on_with_the_same_bits() {
             end = experiment.step(&mut copy, &command);
         }
         assert_eq!((copy.steps, copy.pace, copy.state), (whole.steps, whole.pace, whole.state));
-        assert_eq!(copy.summary.values(experiment.plant.layout()), whole.summary.values(experiment.plant.layout()));
+        assert_eq!(
+            copy.summary.values(experiment.plant.layout()),
+            whole.summary.values(experiment.plant.layout())
+        );
     }
 }
 

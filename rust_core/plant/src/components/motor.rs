@@ -104,7 +104,9 @@ mod tests {
             derating_end_degc: Celsius(150.0),
             ..MotorParameters::default()
         };
-        for (degc, share) in [(-40.0, 1.0), (110.0, 1.0), (120.0, 0.75), (140.0, 0.25), (150.0, 0.0), (200.0, 0.0)] {
+        for (degc, share) in
+            [(-40.0, 1.0), (110.0, 1.0), (120.0, 0.75), (140.0, 0.25), (150.0, 0.0), (200.0, 0.0)]
+        {
             let found = motor.available_share(Celsius(degc).kelvin());
             assert!((found - share).abs() < 1e-12, "{degc} degC: {found}");
         }

@@ -95,9 +95,8 @@ mod tests {
             let (wheel_w, powertrain) = attempt(&vehicle, 10.0, end_m_s);
             (wheel_w, Powertrain { spin_loss_w: 0.0, ..powertrain })
         };
-        let reached = |most_w: f64| {
-            reachable_speed_m_s(40.0, TractionSupply { most_w, recovery_w: 0.0 }, no_spin)
-        };
+        let reached =
+            |most_w: f64| reachable_speed_m_s(40.0, TractionSupply { most_w, recovery_w: 0.0 }, no_spin);
         for most_w in [1e3, 2e4, 8e4] {
             let expected = f64::sqrt(100.0 + 2.0 * most_w / inertia_kg);
             assert!((reached(most_w) - expected).abs() < 1e-9, "{most_w}");
