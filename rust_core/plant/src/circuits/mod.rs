@@ -5,3 +5,4 @@ pub mod exchangers;
 pub mod refrigeration_cycle;
 pub mod refrigeration_loop;
 mod refrigeration_solver;
+pub mod vapour_injection;
