@@ -1,7 +1,7 @@
 //! Prints the refrigeration loop at 20 operating points as CSV, parameters first as commented TOML; takes the name of the
-//! refrigerant.
+//! refrigerant and, for vapour injection, `economiser` or `flash-tank`.
 //!
-//! `scripts/check_refrigeration_cycle.py` compares them with CoolProp and TESPy.
+//! `scripts/check_refrigeration_cycle.py` compares them with CoolProp and TESPy, `scripts/check_vapour_injection.py` with vclibpy.
 
 #[path = "../tests/support/refrigeration.rs"]
 mod support;
@@ -49,6 +49,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if fluid.eq_ignore_ascii_case("R290") {
         parameters.compressor.displacement_cm3 = R290_DISPLACEMENT_CM3;
     }
+    parameters.injection = match std::env::args().nth(2).as_deref() {
+        Some("economiser") => Some(support::injection(true)),
+        Some("flash-tank") => Some(support::injection(false)),
+        _ => None,
+    };
     println!("# condenser_ua_w_k = {:?}", support::CONDENSER_UA_W_K);
     println!("# evaporator_ua_w_k = {:?}", support::EVAPORATOR_UA_W_K);
     for line in toml::to_string(&parameters)?.lines() {
@@ -57,7 +62,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!(
         "hot_return_k,cold_return_k,hot_capacity_rate_w_k,cold_capacity_rate_w_k,power_limit_w,status,\
          evaporating_temperature_k,condensing_temperature_k,speed_rev_s,mass_flow_kg_s,electric_power_w,\
-         condenser_heat_flow_w,evaporator_heat_flow_w,discharge_temperature_k,superheat_k,subcooling_k"
+         condenser_heat_flow_w,evaporator_heat_flow_w,discharge_temperature_k,superheat_k,subcooling_k,\
+         injected_mass_flow_kg_s"
     );
     let cycle = RefrigerationCycle::new(parameters, table).map_err(|violation| violation.in_file(&fluid))?;
     for [hot_degc, cold_degc, hot_w_k, cold_w_k, power_limit_w] in POINTS {
@@ -65,7 +71,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let demand = LoopDemand { power_limit_w, speed_limit_rev_s: 140.0, hold_minimum_speed: false };
         let r = cycle.solve(&boundary, &demand, None);
         println!(
-            "{},{},{hot_w_k},{cold_w_k},{power_limit_w},{:?},{},{},{},{},{},{},{},{},{},{}",
+            "{},{},{hot_w_k},{cold_w_k},{power_limit_w},{:?},{},{},{},{},{},{},{},{},{},{},{}",
             boundary.hot_return_k,
             boundary.cold_return_k,
             r.status,
@@ -78,7 +84,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             r.evaporator_heat_flow_w,
             r.discharge_temperature_k,
             r.superheat_k,
-            r.subcooling_k
+            r.subcooling_k,
+            r.injected_mass_flow_kg_s
         );
     }
     Ok(())

@@ -6,3 +6,4 @@ pub mod front_ends;
 pub mod refrigeration_cycle;
 pub mod refrigeration_loop;
 mod refrigeration_solver;
+pub mod vapour_injection;

@@ -1,6 +1,7 @@
 //! Equations of the quasi-steady vapour-compression cycle, for given saturation temperatures and speed.
 
 use super::refrigeration_loop::LoopBoundary;
+use super::vapour_injection::{Between, InjectionParameters, VapourInjection};
 use crate::components::compressor::{CompressorParameters, soft_floor};
 use crate::components::refrigerant_exchanger::approach_limited_k;
 use crate::config::{Celsius, Violation};
@@ -27,6 +28,8 @@ parameters! {
         ;
         /// The electrically driven compressor.
         compressor: CompressorParameters,
+        /// Vapour injection into the compressor; none where the section is absent.
+        injection: Option<InjectionParameters>,
     }
 }
 
@@ -44,6 +47,7 @@ pub struct RefrigerationCycle {
     displacement_m3: f64,
     /// Electrical power per shaft power [-].
     electric_per_shaft: f64,
+    injection: Option<VapourInjection>,
 }
 
 /// Coolants as the cycle meets them.
@@ -71,10 +75,15 @@ pub(super) struct CyclePoint<T> {
     pub superheat_k: T,
     pub subcooling_k: T,
     pub evaporating_pressure_pa: T,
+    /// Flow through suction and evaporator [kg/s].
     pub mass_flow_kg_s: T,
+    /// Injected flow per suction flow; the condenser has both [-].
+    pub injected_share: T,
     pub suction_enthalpy_j_kg: T,
     pub discharge_enthalpy_j_kg: T,
     pub liquid_enthalpy_j_kg: T,
+    /// Liquid at the evaporator's valve; that of the condenser where nothing is injected [J/kg].
+    pub evaporator_inlet_j_kg: T,
     pub isobar: CondensingIsobar<T>,
     pub evaporator_w: T,
     pub condenser_w: T,
@@ -125,6 +134,7 @@ impl RefrigerationCycle {
             highest_discharge_k: Celsius(compressor.maximum_discharge_temperature_degc).kelvin(),
             displacement_m3: compressor.displacement_m3(),
             electric_per_shaft: compressor.electrical_efficiency.recip(),
+            injection: parameters.injection.clone().map(|injection| VapourInjection::new(injection, &table)),
             parameters,
             table,
         })
@@ -173,13 +183,34 @@ impl RefrigerationCycle {
 
         let efficiency =
             parameters.compressor.efficiency(isobar.pressure_pa / suction.pressure_pa, speed_rev_s);
-        let isentropic_j_kg = isobar.enthalpy_at_entropy_j_kg(suction.entropy_j_kg_k) - suction.enthalpy_j_kg;
-        let work_j_kg = soft_floor(isentropic_j_kg, WORK_KNEE_J_KG) / efficiency.isentropic;
+        let (injected_share, evaporator_inlet_j_kg, work_j_kg, discharge_enthalpy_j_kg) =
+            if let Some(injection) = &self.injection {
+                let injected = injection.compress(&Between {
+                    table: &self.table,
+                    evaporating_k,
+                    suction: &suction,
+                    isobar: &isobar,
+                    subcooling_k: condensing_k.then(subcooling_k),
+                    liquid_enthalpy_j_kg,
+                    isentropic_efficiency: efficiency.isentropic,
+                });
+                (
+                    injected.share,
+                    injected.evaporator_inlet_j_kg,
+                    injected.work_j_kg,
+                    injected.discharge_enthalpy_j_kg,
+                )
+            } else {
+                let isentropic_j_kg =
+                    isobar.enthalpy_at_entropy_j_kg(suction.entropy_j_kg_k) - suction.enthalpy_j_kg;
+                let work_j_kg = soft_floor(isentropic_j_kg, WORK_KNEE_J_KG) / efficiency.isentropic;
+                (T::constant(0.0), liquid_enthalpy_j_kg, work_j_kg, suction.enthalpy_j_kg + work_j_kg)
+            };
         let mass_flow_kg_s =
             efficiency.volumetric * suction.density_kg_m3 * speed_rev_s * self.displacement_m3;
 
         let compression_w = mass_flow_kg_s * work_j_kg;
-        let evaporator_w = mass_flow_kg_s * (suction.enthalpy_j_kg - liquid_enthalpy_j_kg);
+        let evaporator_w = mass_flow_kg_s * (suction.enthalpy_j_kg - evaporator_inlet_j_kg);
         let condenser_w = evaporator_w + compression_w;
         CyclePoint {
             evaporating_k,
@@ -189,9 +220,11 @@ impl RefrigerationCycle {
             subcooling_k: condensing_k.then(subcooling_k),
             evaporating_pressure_pa: suction.pressure_pa,
             mass_flow_kg_s,
+            injected_share,
             suction_enthalpy_j_kg: suction.enthalpy_j_kg,
-            discharge_enthalpy_j_kg: suction.enthalpy_j_kg + work_j_kg,
+            discharge_enthalpy_j_kg,
             liquid_enthalpy_j_kg,
+            evaporator_inlet_j_kg,
             isobar,
             evaporator_w,
             condenser_w,

@@ -118,8 +118,10 @@ pub struct LoopResult {
     pub condensing_pressure_pa: f64,
     /// Compressor speed [rev/s].
     pub speed_rev_s: f64,
-    /// Refrigerant mass flow [kg/s].
+    /// Refrigerant mass flow at suction [kg/s].
     pub mass_flow_kg_s: f64,
+    /// Flow that is injected besides [kg/s]; 0 without vapour injection.
+    pub injected_mass_flow_kg_s: f64,
     /// Electrical power of the compressor, with the start loss [W].
     pub electric_power_w: f64,
     /// Heat to the hot coolant [W].
@@ -338,7 +340,8 @@ impl RefrigerationCycle {
         let unknowns =
             [result.evaporating_temperature_k, result.condensing_temperature_k, result.speed_rev_s];
         let point = self.point(&sides, unknowns);
-        let flow = point.mass_flow_kg_s;
+        let suction_flow = point.mass_flow_kg_s;
+        let flow = suction_flow * (1.0 + point.injected_share);
         let (dew, bubble) = (point.isobar.dew_enthalpy_j_kg, point.isobar.liquid_enthalpy_j_kg(0.0));
         let suction_dew = self.table.suction_state(point.evaporating_k, 0.0).enthalpy_j_kg;
         let condenser = CondenserStreams {
@@ -347,7 +350,7 @@ impl RefrigerationCycle {
             discharge_k: self.discharge_k(&point),
             condensing_k: point.condensing_k,
             subcooling_k: point.subcooling_k,
-            desuperheating_w: flow * (point.discharge_enthalpy_j_kg - dew).max(0.0),
+            desuperheating_w: suction_flow * (point.discharge_enthalpy_j_kg - dew).max(0.0),
             condensation_w: flow * (point.discharge_enthalpy_j_kg.min(dew) - bubble),
             subcooling_w: flow * (bubble - point.liquid_enthalpy_j_kg),
         };
@@ -356,8 +359,8 @@ impl RefrigerationCycle {
             capacity_rate_w_k: boundary.cold_capacity_rate_w_k,
             evaporating_k: point.evaporating_k,
             superheat_k: point.superheat_k,
-            evaporation_w: flow * (suction_dew - point.liquid_enthalpy_j_kg),
-            superheating_w: flow * (point.suction_enthalpy_j_kg - suction_dew),
+            evaporation_w: suction_flow * (suction_dew - point.evaporator_inlet_j_kg),
+            superheating_w: suction_flow * (point.suction_enthalpy_j_kg - suction_dew),
         };
         let ([a, b, c, d], [e, f, g]) = (condenser.margins_k(), evaporator.margins_k());
         [a, b, c, d, e, f, g]
@@ -382,6 +385,7 @@ impl RefrigerationCycle {
             condensing_pressure_pa: point.isobar.pressure_pa,
             speed_rev_s: point.speed_rev_s,
             mass_flow_kg_s: point.mass_flow_kg_s,
+            injected_mass_flow_kg_s: point.mass_flow_kg_s * point.injected_share,
             electric_power_w: point.electric_w,
             condenser_heat_flow_w: point.condenser_w,
             evaporator_heat_flow_w: point.evaporator_w,
@@ -408,6 +412,7 @@ impl RefrigerationCycle {
             condensing_pressure_pa: self.table.saturation_pressure_pa(condensing_k),
             speed_rev_s: 0.0,
             mass_flow_kg_s: 0.0,
+            injected_mass_flow_kg_s: 0.0,
             electric_power_w: 0.0,
             condenser_heat_flow_w: 0.0,
             evaporator_heat_flow_w: 0.0,

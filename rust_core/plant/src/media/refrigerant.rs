@@ -7,7 +7,8 @@ use crate::config::kinds::REFRIGERANT;
 use crate::config::{ZERO_CELSIUS_K, library};
 use crate::error::{PlantError, PlantResult};
 use crate::numerics::cubic_table::CubicTable;
-use crate::numerics::dual::Real;
+use crate::numerics::dual::{Dual, Real};
+use crate::numerics::elementary;
 
 /// Columns of the tables, without the temperature.
 const COLUMN_NAMES: [&str; COLUMNS] = [
@@ -121,7 +122,62 @@ impl<T: Real> CondensingIsobar<T> {
         let wet = self.dew_enthalpy_j_kg + self.temperature_k * excess;
         if excess.value() > 0.0 { wet + excess * excess * polynomial(&self.vapour, excess) } else { wet }
     }
+
+    /// Enthalpy at this pressure and an entropy that may be far above the dew point [J/kg]; linear beyond `range_j_kg_k` above it,
+    /// which is as far as the table reaches.
+    pub fn enthalpy_at_any_entropy_j_kg(&self, entropy_j_kg_k: T, range_j_kg_k: f64) -> T {
+        let beyond = entropy_j_kg_k - self.dew_entropy_j_kg_k - range_j_kg_k;
+        if beyond.value() <= 0.0 {
+            return self.enthalpy_at_entropy_j_kg(entropy_j_kg_k);
+        }
+        let edge_j_kg = self.enthalpy_at_entropy_j_kg(self.dew_entropy_j_kg_k + range_j_kg_k);
+        edge_j_kg + self.slope_k(range_j_kg_k) * beyond
+    }
+
+    /// Entropy at this pressure and the given enthalpy [J/(kg K)], the inverse of [`Self::enthalpy_at_any_entropy_j_kg`].
+    pub fn entropy_at_enthalpy_j_kg_k(&self, enthalpy_j_kg: T, range_j_kg_k: f64) -> T {
+        let excess = enthalpy_j_kg - self.dew_enthalpy_j_kg;
+        if excess.value() <= 0.0 {
+            return self.dew_entropy_j_kg_k + excess / self.temperature_k;
+        }
+        let edge_j_kg = self.enthalpy_at_entropy_j_kg(self.dew_entropy_j_kg_k + range_j_kg_k);
+        if enthalpy_j_kg.value() >= edge_j_kg.value() {
+            let beyond = (enthalpy_j_kg - edge_j_kg) / self.slope_k(range_j_kg_k);
+            return self.dew_entropy_j_kg_k + range_j_kg_k + beyond;
+        }
+        let [a, b, c] = self.vapour.map(Real::value);
+        let temperature_k = self.temperature_k.value();
+        let rise = |x: f64| x * (temperature_k + x * (a + x * (b + x * c)));
+        let slope = |x: f64| temperature_k + x * (2.0 * a + x * (3.0 * b + x * 4.0 * c));
+        let mut entropy = excess.value() / temperature_k;
+        for _ in 0..INVERSE_ITERATIONS {
+            entropy += (excess.value() - rise(entropy)) / slope(entropy);
+        }
+        // The last step of Newton's method carries the derivatives.
+        let constant = T::constant(entropy);
+        let reached =
+            constant * self.temperature_k + constant * constant * polynomial(&self.vapour, constant);
+        self.dew_entropy_j_kg_k + (excess - reached) / slope(entropy) + entropy
+    }
+
+    /// Rise of enthalpy with entropy at an entropy above the dew point [K].
+    fn slope_k(&self, excess_j_kg_k: f64) -> T {
+        let [a, b, c] = self.vapour;
+        let x = excess_j_kg_k;
+        self.temperature_k + (a * 2.0 + (b * 3.0 + c * (4.0 * x)) * x) * x
+    }
 }
+
+/// Superheat that the polynomials cover [K], and the least entropy above the dew point [J/(kg K)]: as in `make_table.py`.
+const LARGEST_SATURATION_DISTANCE_K: f64 = 10.0;
+const LEAST_ENTROPY_RANGE_J_KG_K: f64 = 180.0;
+
+/// Steps of Newton's method, beyond which round-off is all that is left.
+const INVERSE_ITERATIONS: usize = 4;
+
+/// Change of a liquid's enthalpy with pressure at constant temperature over saturation temperature [J/(kg Pa)].
+#[derive(Debug, Clone, PartialEq)]
+pub struct LiquidUnderPressure(CubicTable<1>);
 
 /// Property table of one refrigerant.
 #[derive(Debug, Clone, PartialEq)]
@@ -270,6 +326,65 @@ impl RefrigerantTable {
             }
         }
         0.5 * (low + high)
+    }
+
+    /// Saturation temperature at a pressure within the table, with its derivatives [K]; `guess_k` is near it.
+    pub fn saturation_near_k<T: Real>(&self, pressure_pa: T, guess_k: f64) -> T {
+        let at = |temperature_k: f64| self.saturation_pressure_pa(Dual::variable(temperature_k));
+        let mut temperature_k = guess_k.clamp(self.table.first(), self.table.last());
+        for _ in 0..INVERSE_ITERATIONS {
+            let pressure = at(temperature_k);
+            // The logarithm of pressure is nearly a straight line over the reciprocal of temperature.
+            let change = elementary::ln(pressure_pa.value() / pressure.value) * pressure.value
+                / (pressure.gradient * temperature_k * temperature_k);
+            temperature_k =
+                (temperature_k.recip() - change).recip().clamp(self.table.first(), self.table.last());
+        }
+        let pressure = at(temperature_k);
+        (pressure_pa - pressure.value) / pressure.gradient + temperature_k
+    }
+
+    /// Entropy above the dew point as far as the polynomials of all isobars reach [J/(kg K)], by the rule of `make_table.py`.
+    #[must_use]
+    pub fn entropy_range_j_kg_k(&self) -> f64 {
+        let lowest = self.suction_state(self.table.first(), LARGEST_SATURATION_DISTANCE_K).entropy_j_kg_k;
+        let highest = self.condensing_isobar(self.table.last()).dew_entropy_j_kg_k;
+        (lowest - highest).max(LEAST_ENTROPY_RANGE_J_KG_K)
+    }
+
+    /// What pressure adds to the enthalpy of liquid.
+    ///
+    /// Along saturation `dh/dT = c_p + (dh/dp)_T dp/dT`, and `c_p` is the table's first coefficient of subcooling.
+    #[must_use]
+    pub fn liquid_under_pressure(&self) -> LiquidUnderPressure {
+        let nodes = self.table.nodes();
+        let slope = |temperature_k: &f64| {
+            let [pressure, enthalpy, per_subcooling] =
+                self.table.evaluate::<_, PRESSURE, 3>(Dual::variable(*temperature_k));
+            [(enthalpy.gradient + per_subcooling.value) / pressure.gradient]
+        };
+        let rows: Vec<[f64; 1]> = nodes.iter().map(slope).collect();
+        LiquidUnderPressure(CubicTable::new(&nodes, &rows).expect("the grid of a table that was built"))
+    }
+
+    /// Enthalpy of liquid at a temperature and a pressure above that of saturation there [J/kg].
+    pub fn liquid_at_pressure_j_kg<T: Real>(
+        &self,
+        liquid: &LiquidUnderPressure,
+        temperature_k: T,
+        pressure_pa: T,
+    ) -> T {
+        let alone = temperature_k.alone();
+        let [saturation_pa, enthalpy_j_kg] =
+            self.table.evaluate::<_, PRESSURE, 2>(alone).map(|value| temperature_k.then(value));
+        let [slope] = liquid.0.evaluate::<_, 0, 1>(alone).map(|value| temperature_k.then(value));
+        enthalpy_j_kg + slope * (pressure_pa - saturation_pa)
+    }
+
+    /// Enthalpy of vapour `superheat_k` above saturation [J/kg].
+    pub fn superheated_enthalpy_j_kg<T: Real>(&self, saturation_k: T, superheat_k: T) -> T {
+        let coefficients = self.table.evaluate::<_, 0, 4>(saturation_k.alone());
+        polynomial(&coefficients.map(|coefficient| saturation_k.then(coefficient)), superheat_k)
     }
 
     /// Vapour that leaves the evaporator.
