@@ -1,11 +1,15 @@
 //! Prints the refrigeration loop at 20 operating points as CSV, parameters first as commented TOML.
 //!
+//! An argument is the share of the motor's loss that heats the gas.
+//!
 //! `scripts/check_refrigeration_cycle.py` compares them with CoolProp and TESPy.
 
 #[path = "../tests/support/refrigeration.rs"]
 mod support;
 
+use hp_plant::circuits::refrigeration_cycle::RefrigerationCycle;
 use hp_plant::circuits::refrigeration_loop::LoopDemand;
+use hp_plant::media::refrigerant::RefrigerantTable;
 
 /// Hot and cold coolant returns [degC], their capacity rates [W/K] and the power demand [W].
 const POINTS: [[f64; 5]; 20] = [
@@ -34,7 +38,11 @@ const POINTS: [[f64; 5]; 20] = [
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("# condenser_ua_w_k = {:?}", support::CONDENSER_UA_W_K);
     println!("# evaporator_ua_w_k = {:?}", support::EVAPORATOR_UA_W_K);
-    for line in toml::to_string(&support::parameters())?.lines() {
+    let mut parameters = support::parameters();
+    if let Some(share) = std::env::args().nth(1) {
+        parameters.compressor.loss_to_gas_share = share.parse()?;
+    }
+    for line in toml::to_string(&parameters)?.lines() {
         println!("# {line}");
     }
     println!(
@@ -42,7 +50,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
          evaporating_temperature_k,condensing_temperature_k,speed_rev_s,mass_flow_kg_s,electric_power_w,\
          condenser_heat_flow_w,evaporator_heat_flow_w,discharge_temperature_k,superheat_k,subcooling_k"
     );
-    let cycle = support::cycle();
+    let cycle = RefrigerationCycle::new(parameters, RefrigerantTable::load("R134a")?)
+        .map_err(|violation| violation.key)?;
     for [hot_degc, cold_degc, hot_w_k, cold_w_k, power_limit_w] in POINTS {
         let boundary = support::boundary(hot_degc, cold_degc, hot_w_k, cold_w_k);
         let demand = LoopDemand { power_limit_w, speed_limit_rev_s: 140.0, hold_minimum_speed: false };

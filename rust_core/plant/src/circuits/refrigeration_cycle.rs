@@ -42,8 +42,10 @@ pub struct RefrigerationCycle {
     /// Highest discharge temperature [K].
     pub(super) highest_discharge_k: f64,
     displacement_m3: f64,
-    /// Electrical power per shaft power [-].
+    /// Electrical power per power of compression [-].
     electric_per_shaft: f64,
+    /// Heat and work that the gas takes up per work of compression [-]: with what it gets of the losses.
+    gas_per_compression: f64,
 }
 
 /// Coolants as the cycle meets them.
@@ -121,6 +123,8 @@ impl RefrigerationCycle {
             highest_discharge_k: Celsius(compressor.maximum_discharge_temperature_degc).kelvin(),
             displacement_m3: compressor.displacement_m3(),
             electric_per_shaft: compressor.electrical_efficiency.recip(),
+            gas_per_compression: 1.0
+                + compressor.loss_to_gas_share * (compressor.electrical_efficiency.recip() - 1.0),
             parameters,
             table,
         })
@@ -175,8 +179,9 @@ impl RefrigerationCycle {
             efficiency.volumetric * suction.density_kg_m3 * speed_rev_s * self.displacement_m3;
 
         let compression_w = mass_flow_kg_s * work_j_kg;
+        let gas_j_kg = work_j_kg * self.gas_per_compression;
         let evaporator_w = mass_flow_kg_s * (suction.enthalpy_j_kg - liquid_enthalpy_j_kg);
-        let condenser_w = evaporator_w + compression_w;
+        let condenser_w = evaporator_w + compression_w * self.gas_per_compression;
         CyclePoint {
             evaporating_k,
             condensing_k,
@@ -186,7 +191,7 @@ impl RefrigerationCycle {
             evaporating_pressure_pa: suction.pressure_pa,
             mass_flow_kg_s,
             suction_enthalpy_j_kg: suction.enthalpy_j_kg,
-            discharge_enthalpy_j_kg: suction.enthalpy_j_kg + work_j_kg,
+            discharge_enthalpy_j_kg: suction.enthalpy_j_kg + gas_j_kg,
             liquid_enthalpy_j_kg,
             isobar,
             evaporator_w,

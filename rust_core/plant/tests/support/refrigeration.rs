@@ -37,12 +37,16 @@ pub fn parameters() -> RefrigerationParameters {
             isentropic_pressure_ratio_loss: 0.35,
             isentropic_speed_loss: 0.6,
             electrical_efficiency: 0.9,
+            loss_to_gas_share: 0.0,
+            settling_time_s: 0.0,
+            migration_time_s: 120.0,
             minimum_pressure_ratio: 1.1,
         },
     }
 }
 
 /// The test loop with R134a.
+#[allow(dead_code, reason = "not every user of this file needs it")]
 pub fn cycle() -> RefrigerationCycle {
     let table = RefrigerantTable::load("R134a").expect("R134a is built in");
     RefrigerationCycle::new(parameters(), table).expect("the parameters fit the table")
