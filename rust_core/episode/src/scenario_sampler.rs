@@ -77,6 +77,12 @@ parameters! {
         plugged_in_low_degc: Celsius = -40.0 .. 50.0,
         /// Hottest temperature that is kept [degC].
         plugged_in_high_degc: Celsius = -40.0 .. 50.0,
+        /// Lowest relative humidity of ambient air [-]; dry where the file does not say.
+        #[serde(default)]
+        relative_humidity_low: f64 = 0.0 .. 1.0,
+        /// Highest relative humidity of ambient air [-].
+        #[serde(default)]
+        relative_humidity_high: f64 = 0.0 .. 1.0,
     }
 }
 
@@ -98,6 +104,7 @@ impl Validate for DistributionParameters {
             ("ranges.garage_low_degc", ranges.garage_low_degc.0, ranges.garage_high_degc.0),
             ("ranges.plugged_in_low_degc", ranges.plugged_in_low_degc.0, ranges.plugged_in_high_degc.0),
             ("ranges.charge_low_pct", ranges.charge_low_pct, ranges.charge_high_pct),
+            ("ranges.relative_humidity_low", ranges.relative_humidity_low, ranges.relative_humidity_high),
         ] {
             check_range(key, low, f64::NEG_INFINITY, high)?;
         }
@@ -210,6 +217,11 @@ impl Distribution {
         if let Some(kept_degc) = self.draw_kept_degc(cycle, random).filter(|&kept_degc| kept_degc > soak_degc)
         {
             initial.set(battery_name(layout), Some(Celsius(kept_degc)));
+        }
+        // Last, and drawn only where there is some, so that the trips of a file without humidity stay what they were.
+        if ranges.relative_humidity_high > 0.0 {
+            climate.relative_humidity =
+                random.between(ranges.relative_humidity_low, ranges.relative_humidity_high);
         }
         Trip {
             origin: Arc::clone(&self.origin),

@@ -14,6 +14,8 @@ pub struct Disturbance {
     pub end_speed_m_s: f64,
     /// Ambient air.
     pub air: AirProperties,
+    /// Water in a kilogram of dry ambient air [kg/kg]; 0 is dry.
+    pub ambient_humidity_ratio: f64,
     /// Solar heat into the cabin [W].
     pub solar_gain_w: f64,
     /// People in the cabin.

@@ -22,6 +22,8 @@ pub struct Experiment {
     pub climate: ClimateParameters,
     /// Ambient air of that climate, worked out once.
     pub air: AirProperties,
+    /// Water in a kilogram of its dry air [kg/kg].
+    pub ambient_humidity_ratio: f64,
     /// Initial state of this run.
     pub initial: InitialParameters,
     /// Vehicle.
@@ -102,6 +104,7 @@ impl Experiment {
             controller_file: file,
             commander: Arc::new(commander),
             air: scenario.climate.air(),
+            ambient_humidity_ratio: scenario.climate.humidity_ratio(),
             climate: scenario.climate.clone(),
             initial: scenario.initial.clone(),
             scenario: Arc::new(scenario),
@@ -125,6 +128,7 @@ impl Experiment {
             start_speed_m_s: at(step),
             end_speed_m_s: at(step + 1),
             air: self.air,
+            ambient_humidity_ratio: self.ambient_humidity_ratio,
             solar_gain_w: self.climate.solar_gain_w,
             occupants: f64::from(self.climate.occupants),
         }

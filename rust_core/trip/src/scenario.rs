@@ -8,6 +8,7 @@ use hp_plant::config::initial::InitialParameters;
 use hp_plant::config::vehicle::built_in_members;
 use hp_plant::config::{Celsius, Validate, Violation};
 use hp_plant::media::air::{self, AirProperties};
+use hp_plant::media::moist_air;
 use hp_plant::parameters;
 use serde::Deserialize;
 
@@ -41,6 +42,9 @@ parameters! {
     pub struct ClimateParameters {
         /// Ambient temperature [degC].
         ambient_temperature_degc: Celsius = -50.0 .. 60.0,
+        /// Relative humidity of ambient air [-], against ice below 0 degC (ours); dry air where the file does not say.
+        #[serde(default)]
+        relative_humidity: f64 = 0.0 .. 1.0,
         /// Solar heat that reaches the cabin [W] (ours; 0 in the paper).
         solar_gain_w: f64 = 0.0 .. 3000.0,
         /// Number of people (ours; the driver in the paper).
@@ -53,6 +57,12 @@ impl ClimateParameters {
     #[must_use]
     pub fn air(&self) -> AirProperties {
         air::at_temperature(self.ambient_temperature_degc.kelvin())
+    }
+
+    /// Water in a kilogram of dry ambient air [kg/kg].
+    #[must_use]
+    pub fn humidity_ratio(&self) -> f64 {
+        moist_air::humidity_ratio(self.relative_humidity, self.ambient_temperature_degc.kelvin())
     }
 }
 

@@ -22,6 +22,7 @@ fn weather(ambient_degc: f64, speed_m_s: f64) -> Disturbance {
         start_speed_m_s: speed_m_s,
         end_speed_m_s: speed_m_s,
         air: air::at_temperature(Celsius(ambient_degc).kelvin()),
+        ambient_humidity_ratio: 0.0,
         solar_gain_w: 0.0,
         occupants: 1.0,
     }

@@ -1,4 +1,5 @@
 //! Working fluids, one file each.
 
 pub mod air;
+pub mod moist_air;
 pub mod refrigerant;

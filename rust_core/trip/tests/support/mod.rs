@@ -105,6 +105,7 @@ impl RandomScenario {
             start_speed_m_s: at(step),
             end_speed_m_s: if (step + 1).is_multiple_of(HOLD_S) { to } else { at(step + 1) },
             air: air::at_temperature(Celsius(self.ambient_degc).kelvin()),
+            ambient_humidity_ratio: 0.0,
             solar_gain_w: self.solar_gain_w,
             occupants: self.occupants,
         }
