@@ -1,6 +1,8 @@
 //! Prints the refrigeration loop at 20 operating points as CSV, parameters first as commented TOML; takes the name of the
 //! refrigerant and, for vapour injection, `economiser` or `flash-tank`.
 //!
+//! With a third argument, `-` for no injection before it: the share of the motor's loss that heats the gas.
+//!
 //! `scripts/check_refrigeration_cycle.py` compares them with CoolProp and TESPy, `scripts/check_vapour_injection.py` with vclibpy.
 
 #[path = "../tests/support/refrigeration.rs"]
@@ -56,6 +58,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     println!("# condenser_ua_w_k = {:?}", support::CONDENSER_UA_W_K);
     println!("# evaporator_ua_w_k = {:?}", support::EVAPORATOR_UA_W_K);
+    if let Some(share) = std::env::args().nth(3) {
+        parameters.compressor.loss_to_gas_share = share.parse()?;
+    }
     for line in toml::to_string(&parameters)?.lines() {
         println!("# {line}");
     }

@@ -2,8 +2,9 @@
 //!
 //! Trajectories, reports and observations are derived from these rows.
 
+use crate::architecture::declaration::Level;
 use crate::architecture::kind::Bounds;
-use crate::architecture::layout::Layout;
+use crate::architecture::layout::{ExchangerLayout, ExchangerSide, Layout};
 use crate::architecture::ranks as rank;
 use crate::config::ZERO_CELSIUS_K;
 use crate::flows::Flow;
@@ -95,6 +96,21 @@ impl Reader {
 fn connection(layout: &Layout, state: &State, member: usize) -> f64 {
     let connected = layout.members[member].options.iter().find(|&&branch| state.connected[branch]);
     connected.map_or(0.0, |&branch| (layout.branches[branch].circuit + 1) as f64)
+}
+
+/// Useful heat over compressor power: that of the evaporator while a cabin is cooled, that of the condenser otherwise; 0 at rest.
+fn coefficient_of_performance(view: &View<'_>, record: &StepRecord) -> f64 {
+    let layout = view.plant.layout();
+    let by_coolant =
+        || layout.cabins.iter().filter_map(|cabin| cabin.cooler).any(|b| view.state.connected[b]);
+    let by_refrigerant = || {
+        let cold =
+            |e: &&ExchangerLayout| e.level == Level::Evaporating && matches!(e.side, ExchangerSide::Cabin(_));
+        layout.exchangers.iter().filter(cold).any(|exchanger| record.flows[exchanger.flow] > 0.0)
+    };
+    let useful = if by_coolant() || by_refrigerant() { Flow::EVAPORATOR } else { Flow::CONDENSER };
+    let power_w = record.flows[Flow::COMPRESSOR];
+    if power_w > 0.0 { record.flows[useful] / power_w } else { 0.0 }
 }
 
 /// What a row's bounds are where nothing else is said, by unit.
@@ -346,12 +362,12 @@ impl SignalTable {
                 v.recorded(|r| f64::from(u8::from(r.refrigeration.bracketed)))
             })
             .within(0.0, 1.0),
-            function("cop", "-", "condenser heat flow over compressor power; 0 at rest", |v| {
-                v.recorded(|r| {
-                    let power_w = r.flows[Flow::COMPRESSOR];
-                    if power_w > 0.0 { r.flows[Flow::CONDENSER] / power_w } else { 0.0 }
-                })
-            }),
+            function(
+                "cop",
+                "-",
+                "condenser heat flow over compressor power, evaporator heat flow while a cabin is cooled; 0 at rest",
+                |v| v.recorded(|r| coefficient_of_performance(v, r)),
+            ),
         ]);
     }
 

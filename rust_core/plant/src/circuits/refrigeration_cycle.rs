@@ -45,9 +45,11 @@ pub struct RefrigerationCycle {
     /// Highest discharge temperature [K].
     pub(super) highest_discharge_k: f64,
     displacement_m3: f64,
-    /// Electrical power per shaft power [-].
+    /// Electrical power per power of compression [-].
     electric_per_shaft: f64,
     injection: Option<VapourInjection>,
+    /// Heat and work that the gas takes up per work of compression [-]: with what it gets of the losses.
+    gas_per_compression: f64,
 }
 
 /// Coolants as the cycle meets them.
@@ -135,6 +137,8 @@ impl RefrigerationCycle {
             displacement_m3: compressor.displacement_m3(),
             electric_per_shaft: compressor.electrical_efficiency.recip(),
             injection: parameters.injection.clone().map(|injection| VapourInjection::new(injection, &table)),
+            gas_per_compression: 1.0
+                + compressor.loss_to_gas_share * (compressor.electrical_efficiency.recip() - 1.0),
             parameters,
             table,
         })
@@ -194,24 +198,27 @@ impl RefrigerationCycle {
                     liquid_enthalpy_j_kg,
                     isentropic_efficiency: efficiency.isentropic,
                 });
+                // The losses heat all gas, the injected too.
+                let loss_j_kg = injected.work_j_kg * (self.gas_per_compression - 1.0) / (injected.share + 1.0);
                 (
                     injected.share,
                     injected.evaporator_inlet_j_kg,
                     injected.work_j_kg,
-                    injected.discharge_enthalpy_j_kg,
+                    injected.discharge_enthalpy_j_kg + loss_j_kg,
                 )
             } else {
                 let isentropic_j_kg =
                     isobar.enthalpy_at_entropy_j_kg(suction.entropy_j_kg_k) - suction.enthalpy_j_kg;
                 let work_j_kg = soft_floor(isentropic_j_kg, WORK_KNEE_J_KG) / efficiency.isentropic;
-                (T::constant(0.0), liquid_enthalpy_j_kg, work_j_kg, suction.enthalpy_j_kg + work_j_kg)
+                let discharge_j_kg = suction.enthalpy_j_kg + work_j_kg * self.gas_per_compression;
+                (T::constant(0.0), liquid_enthalpy_j_kg, work_j_kg, discharge_j_kg)
             };
         let mass_flow_kg_s =
             efficiency.volumetric * suction.density_kg_m3 * speed_rev_s * self.displacement_m3;
 
         let compression_w = mass_flow_kg_s * work_j_kg;
         let evaporator_w = mass_flow_kg_s * (suction.enthalpy_j_kg - evaporator_inlet_j_kg);
-        let condenser_w = evaporator_w + compression_w;
+        let condenser_w = evaporator_w + compression_w * self.gas_per_compression;
         CyclePoint {
             evaporating_k,
             condensing_k,

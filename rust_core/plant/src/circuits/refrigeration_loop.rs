@@ -130,7 +130,7 @@ pub struct LoopResult {
     pub evaporator_heat_flow_w: f64,
     /// Gas temperature at the compressor outlet [K].
     pub discharge_temperature_k: f64,
-    /// Motor loss and start loss, which leave to ambient [W].
+    /// What leaves to ambient: start loss, and the loss of motor and inverter less what heats the gas [W].
     pub loss_to_ambient_w: f64,
     /// Share of the start loss in power and loss [W].
     pub start_loss_w: f64,
@@ -248,13 +248,15 @@ impl RefrigerationCycle {
         let demand_w =
             allowed.demand_w.min(allowed.available_w - state.compressor.start_loss_w(parameters, step_s));
         let wanted = demand_w >= parameters.minimum_power_w;
-        let hold_minimum_speed = state.compressor.held_on(parameters);
+        let held_on = state.compressor.held_on(parameters);
+        let power_share = state.compressor.power_share(parameters, step_s);
         let startable = allowed.may_start && wanted && state.compressor.rested(parameters);
-        let mut result = if (state.compressor.running && (wanted || hold_minimum_speed)) || startable {
+        let mut result = if (state.compressor.running && (wanted || held_on)) || startable {
             let demand = LoopDemand {
-                power_limit_w: if wanted { demand_w } else { 0.0 },
+                power_limit_w: if wanted { demand_w * power_share } else { 0.0 },
                 speed_limit_rev_s: state.compressor.speed_limit_rev_s(parameters, step_s),
-                hold_minimum_speed,
+                // Not yet settled, it may need more at its lowest speed than its share.
+                hold_minimum_speed: held_on || (wanted && power_share < 1.0),
             };
             let expected =
                 state.last.map(|last| last.expected(boundary, &demand, parameters.minimum_speed_rev_s));
@@ -262,8 +264,9 @@ impl RefrigerationCycle {
         } else {
             self.at_rest(boundary, LoopStatus::Off, Limit::Power)
         };
-        if result.electric_power_w > allowed.available_w {
-            // Not even minimum speed can be fed: the minimum time on ends here.
+        let beyond_demand = !held_on && power_share < 1.0 && result.electric_power_w > demand_w;
+        if result.electric_power_w > allowed.available_w || beyond_demand {
+            // Not even minimum speed can be fed, or it was not asked for: the minimum time on ends here.
             result = self.at_rest(boundary, LoopStatus::Off, Limit::Power);
         }
         let forced = result.limited_by != Limit::Power;
@@ -390,7 +393,9 @@ impl RefrigerationCycle {
             condenser_heat_flow_w: point.condenser_w,
             evaporator_heat_flow_w: point.evaporator_w,
             discharge_temperature_k: discharge_k,
-            loss_to_ambient_w: (1.0 - self.parameters.compressor.electrical_efficiency) * point.electric_w,
+            loss_to_ambient_w: (1.0 - self.parameters.compressor.loss_to_gas_share)
+                * (1.0 - self.parameters.compressor.electrical_efficiency)
+                * point.electric_w,
             start_loss_w: 0.0,
             superheat_k: point.superheat_k,
             subcooling_k: point.subcooling_k,
