@@ -58,6 +58,8 @@ class Variant(BaseModel):
     ambient_high_degc: float = 60.0
     soak_temperature_degc: float | None = None
     solar_gain_w: Annotated[float, Field(ge=0.0)] = 0.0
+    relative_humidity: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
+    """Of ambient air; dry where nothing is given."""
     parked_in_sun_k: Annotated[float, Field(ge=0.0)] = 0.0
     """By how much the cabin is warmer than all else."""
 
@@ -121,6 +123,7 @@ class Scenario:
                 "cycle": self.cycle.name,
                 "climate": {
                     "ambient_temperature_degc": ambient_degc,
+                    "relative_humidity": variant.relative_humidity,
                     "solar_gain_w": variant.solar_gain_w,
                     "occupants": variant.occupants,
                 },

@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn cooling_may_have_a_blower_level_of_its_own() {
         let cooling = Options { cooling_blower_level: 0.9, ..modern() };
-        assert_eq!(cooling.blower_level(CabinMode::Cooling, 0.6, 5.0), 0.9);
+        assert!((cooling.blower_level(CabinMode::Cooling, 0.6, 5.0) - 0.9).abs() < 1e-12);
         assert_eq!(cooling.blower_level(CabinMode::Heating, 0.6, 20.0), 0.6);
     }
 
