@@ -13,7 +13,7 @@ use hp_plant::plant::{CONTROL_PERIOD_S, Disturbance, Plant};
 use hp_plant::state::State;
 use hp_trip::experiment::Experiment;
 use hp_trip::run::{EndReason, Run};
-use hp_trip::summary::COMFORT_TEMPERATURE_DEGC;
+use hp_trip::summary::{CO2_LIMIT_PPM, COMFORT_TEMPERATURE_DEGC};
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
@@ -47,14 +47,14 @@ macro_rules! terms {
             $(adds |$second:ident| $added:expr;)?
             $(tells $kpi:literal |$told:ident| $value:expr;)?
             $(costs $part:literal |$terms:ident, $weights:ident| $points:expr;
-                $(#[doc = $weight_doc:literal])* $weight:ident in $low:literal .. $high:literal;)?
+                $(#[$weight_meta:meta])* $weight:ident in $low:literal .. $high:literal;)?
     )*) => {
         terms! { @fields $( $( #[doc = $doc] #[doc = concat!(" [", $unit, "].")] $name |$second| $added; )? )* }
 
         parameters! {
             /// Weights of the terms, in points.
             pub struct RewardParameters {
-                $($( $(#[doc = $weight_doc])* $weight: f64 = $low .. $high, )?)*
+                $($( $(#[$weight_meta])* $weight: f64 = $low .. $high, )?)*
                 /// Lower end of the battery's window [degC].
                 battery_window_low_degc: Celsius = -50.0 .. 60.0,
                 /// Upper end of the battery's window [degC].
@@ -160,6 +160,30 @@ terms! {
         costs "reward_penalties" |t, w| -w.battery_window_per_k_h * t.battery_window_k_h;
         /// For an hour of 1 K between the battery and its window.
         battery_window_per_k_h in 0.0 .. 1000.0;
+    /// Dew point of the cabin air above the windscreen's temperature while occupied, integrated
+    fog_k_h ["K h"]
+        adds |s| if s.occupied { (-s.state.cabin_air[0].fog_margin_k()).max(0.0) * HOURS } else { 0.0 };
+        tells "fog_k_h" |t| t.fog_k_h;
+        costs "reward_penalties" |t, w| -w.fog_per_k_h * t.fog_k_h;
+        /// For an hour of fog 1 K deep on the windscreen.
+        #[serde(default)]
+        fog_per_k_h in 0.0 .. 1000.0;
+    /// Time with fog on the windscreen while occupied
+    fog_h ["h"]
+        adds |s| if s.occupied && s.state.cabin_air[0].fog_margin_k() < 0.0 { HOURS } else { 0.0 };
+        tells "fog_s" |t| t.fog_h * SECONDS_PER_HOUR;
+        costs "reward_penalties" |t, w| -w.fog_per_h * t.fog_h;
+        /// For an hour of any fog on the windscreen.
+        #[serde(default)]
+        fog_per_h in 0.0 .. 10000.0;
+    /// Carbon dioxide of the cabin air above 1000 ppm while occupied, integrated
+    bad_air_ppm_h ["ppm h"]
+        adds |s| if s.occupied { (s.state.cabin_air[0].co2 * 1e6 - CO2_LIMIT_PPM).max(0.0) * HOURS } else { 0.0 };
+        tells "bad_air_ppm_h" |t| t.bad_air_ppm_h;
+        costs "reward_penalties" |t, w| -w.bad_air_per_ppm_h * t.bad_air_ppm_h;
+        /// For an hour of 1 ppm of carbon dioxide above 1000.
+        #[serde(default)]
+        bad_air_per_ppm_h in 0.0 .. 10.0;
     /// Stops of the compressor that a protection forced
     protection_trips ["-"]
         adds |s| f64::from(s.state.refrigeration.compressor.protection_trips - s.before.trips);
@@ -399,6 +423,9 @@ mod tests {
                 "discomfort_k",
                 "heat_left_kwh",
                 "battery_window_k_h",
+                "fog_k_h",
+                "fog_s",
+                "bad_air_ppm_h",
                 "protection_trips",
                 "delay_s"
             ]

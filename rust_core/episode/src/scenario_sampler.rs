@@ -9,6 +9,7 @@ use hp_plant::config::initial::MEMBER_RANGE_DEGC;
 use hp_plant::config::library;
 use hp_plant::config::{Celsius, Validate, Violation, check_range};
 use hp_plant::error::{PlantError, PlantResult};
+use hp_plant::media::moist_air;
 use hp_plant::parameters;
 use hp_trip::experiment::Experiment;
 use serde::{Deserialize, Serialize};
@@ -143,6 +144,15 @@ fn season(ranges: &SampledRanges, ambient_degc: f64) -> f64 {
     if span_k > 0.0 { ((ambient_degc - SUNLESS_DEGC) / span_k).clamp(0.0, 1.0) } else { 0.0 }
 }
 
+/// Dew point that summers hardly exceed: sultry air [degC] (assumed).
+const HIGHEST_DEW_POINT: Celsius = Celsius(22.0);
+
+/// Relative humidity of air of that dew point [-].
+fn sultry(ambient_degc: f64) -> f64 {
+    let ratio = moist_air::saturation_ratio(HIGHEST_DEW_POINT.kelvin());
+    moist_air::relative_humidity(ratio, Celsius(ambient_degc).kelvin())
+}
+
 /// Name of the member that is the battery.
 fn battery_name(layout: &Layout) -> &str {
     let battery = layout.members.iter().find(|member| member.kind == MemberKind::Battery);
@@ -219,10 +229,12 @@ impl Distribution {
             initial.set(battery_name(layout), Some(Celsius(kept_degc)));
         }
         // Last, and drawn only where there is some, so that the trips of a file without humidity stay what they were.
-        if ranges.relative_humidity_high > 0.0 {
-            climate.relative_humidity =
-                random.between(ranges.relative_humidity_low, ranges.relative_humidity_high);
-        }
+        climate.relative_humidity = if ranges.relative_humidity_high > 0.0 {
+            let drawn = random.between(ranges.relative_humidity_low, ranges.relative_humidity_high);
+            drawn.min(sultry(ambient_degc))
+        } else {
+            0.0
+        };
         Trip {
             origin: Arc::clone(&self.origin),
             vehicle: self.vehicle.clone(),
@@ -325,6 +337,22 @@ mod tests {
         lengths.sort_unstable();
         lengths.dedup();
         assert!(lengths.len() > 50 && lengths[0] >= 300, "{} lengths from {} s", lengths.len(), lengths[0]);
+    }
+
+    #[test]
+    fn trips_are_dry_or_as_humid_as_their_file_says_and_never_beyond_sultry() {
+        assert!(drawn("train-v1").iter().all(|trip| trip.climate.relative_humidity == 0.0));
+        let trips = drawn("train-v2");
+        let humidity = |trip: &Trip| trip.climate.relative_humidity;
+        assert!(trips.iter().all(|trip| humidity(trip) <= 0.95 && humidity(trip) > 0.1));
+        assert!(trips.iter().any(|trip| humidity(trip) > 0.9));
+        for trip in &trips {
+            let ratio = trip.climate.humidity_ratio();
+            assert!(moist_air::dew_point_k(ratio) <= HIGHEST_DEW_POINT.kelvin() + 1e-6, "{trip:?}");
+        }
+        // The same trips but for their humidity.
+        let dry = drawn("train-v1");
+        assert_eq!(dry[0].climate.ambient_temperature_degc, trips[0].climate.ambient_temperature_degc);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The plant's own controls, once a control period: connections, pumps, switches, heaters, condensing pressure.
 
+use crate::air_side;
 use crate::architecture::indices::Indices;
 use crate::architecture::layout::{
     BRANCH_PLACES, CABIN_PLACES, FRONT_END_PLACES, HEATER_PLACES, LOOP_PLACES,
@@ -10,6 +11,7 @@ use crate::command::Demand;
 use crate::components::cabin::Ventilation;
 use crate::components::pid::ResetGains;
 use crate::components::pump;
+use crate::components::wet_core::WetSurface;
 use crate::config::vehicle::VehicleParameters;
 use crate::network::shape::{Shape, each};
 use crate::state::State;
@@ -25,6 +27,8 @@ pub(crate) struct Period {
     pub demand: Demand,
     pub ventilation: [Ventilation; CABIN_PLACES],
     pub core_inlet_k: [f64; CABIN_PLACES],
+    /// Cooling cores on which water condenses.
+    pub wet_cores: [Option<WetSurface>; CABIN_PLACES],
     pub front_end_air_k: [f64; FRONT_END_PLACES],
     pub front: FrontAirs,
     pub branches_w_k: BranchValues,
@@ -42,6 +46,7 @@ impl Period {
             demand,
             ventilation: [Ventilation::default(); CABIN_PLACES],
             core_inlet_k: [0.0; CABIN_PLACES],
+            wet_cores: [None; CABIN_PLACES],
             front_end_air_k: [0.0; FRONT_END_PLACES],
             front: FrontAirs::default(),
             branches_w_k: [0.0; BRANCH_PLACES],
@@ -92,6 +97,7 @@ impl Controls {
         self.demand_compression(sight, state, period);
         self.connect::<S>(sight, branches, state, period);
         keep_cores_free_of_ice::<S>(sight, state, period);
+        air_side::wet_cores::<S>(sight, state, period);
         self.demand_heat::<S>(sight, state, period);
     }
 

@@ -1,5 +1,6 @@
 //! The vehicle: one entry, [`Plant::step_into`] ([`Plant::step`] returns what it writes), pure and deterministic.
 
+use crate::air_side;
 use crate::architecture::declaration::{Level, MemberKind};
 use crate::architecture::indices::Indices;
 use crate::architecture::layout::{
@@ -15,6 +16,7 @@ use crate::circuits::refrigeration_loop::{
 use crate::command::{ActuatorRanges, Command, Demand};
 use crate::components::battery::{Battery, BatteryState, BatteryStep, CircuitStep, PowerLimits};
 use crate::components::body::RoadLoad;
+use crate::components::cabin_air::{CabinAir, WaterFlows};
 use crate::components::exhaust_recovery::{ExhaustRecovery, RecoveryTemperatures};
 use crate::components::pid::ResetPid;
 use crate::components::powertrain::{Powertrain, PowertrainFlow};
@@ -28,7 +30,8 @@ use crate::config::vehicle::VehicleParameters;
 use crate::controls::{self, Controls, Period, Sight};
 use crate::error::PlantResult;
 use crate::flows::{Flow, Flows};
-use crate::ledger::{Ledger, LedgerEntry, StoredEnergyChange};
+use crate::ledger::{Ledger, LedgerEntry, StoredEnergyChange, WaterEntry};
+use crate::media::moist_air::saturation_ratio;
 use crate::media::refrigerant::RefrigerantTable;
 use crate::network::built_in::with_shape;
 use crate::network::conditions::{CabinConditions, Conditions, Constants};
@@ -67,6 +70,12 @@ pub struct StepRecord {
     pub power_limits: PowerLimits,
     /// Worst ledger entry of the sub-steps.
     pub ledger: LedgerEntry,
+    /// Mean flows of water of each cabin.
+    pub water: [WaterFlows; CABIN_PLACES],
+    /// Air that the blower of the cabin that counts for comfort moves [kg/s].
+    pub supply_air_kg_s: f64,
+    /// Worst entry of the ledger of water, of cabins and sub-steps.
+    pub water_ledger: WaterEntry,
     /// Thermal loads were cut because the battery could not feed them.
     pub loads_shed: bool,
     /// Vehicle speed at the end [m/s]: what was asked for, or less where motor or battery could not deliver it.
@@ -236,6 +245,7 @@ impl Plant {
         State {
             time_s: 0.0,
             temperatures_k,
+            cabin_air: [CabinAir::parked(soak_k); CABIN_PLACES],
             battery: self.battery.rested(initial.state_of_charge_pct / 100.0),
             connected: [false; _],
             switches: ThermalSwitches::default(),
@@ -250,6 +260,17 @@ impl Plant {
             heater_power_w: 0.0,
             compressor_power_w: 0.0,
         }
+    }
+
+    /// A parked vehicle in air of a humidity ratio [kg/kg]: the air of its cabins has it too, as far as it is warm enough.
+    #[must_use]
+    pub fn parked_in(&self, initial: &InitialParameters, ambient_humidity_ratio: f64) -> State {
+        let mut state = self.parked(initial);
+        for (air, cabin) in state.cabin_air.iter_mut().zip(&self.layout().cabins) {
+            let cabin_k = state.temperatures_k[cabin.air.index()];
+            air.humidity_ratio = ambient_humidity_ratio.min(saturation_ratio(cabin_k));
+        }
+        state
     }
 
     /// Temperatures that decide about connections, for the recirculated share of each cabin's air.
@@ -383,11 +404,18 @@ impl Plant {
         let (mut voltage_v, mut current_a) = (0.0, 0.0);
         let mut worst = (LedgerEntry::default(), false);
         let mut slower_m_s = 0.0;
+        let mut water = ([WaterFlows::default(); CABIN_PLACES], WaterEntry::default());
         for part in 0..self.substeps {
             self.substep::<S>(sight, state, period, part, &mut slower_m_s, record, tamper);
             mean.accumulate(&record.flows, share);
             voltage_v += record.battery_voltage_v * share;
             current_a += record.battery_current_a * share;
+            for (mean, flows) in water.0.iter_mut().zip(&record.water) {
+                mean.accumulate(flows, share);
+            }
+            if part == 0 || record.water_ledger.relative() > water.1.relative() {
+                water.1 = record.water_ledger;
+            }
             if part == 0 || record.ledger.relative() > worst.0.relative() {
                 worst.0 = record.ledger;
             }
@@ -396,6 +424,7 @@ impl Plant {
         record.flows = mean;
         (record.battery_voltage_v, record.battery_current_a) = (voltage_v, current_a);
         (record.ledger, record.loads_shed) = worst;
+        (record.water, record.water_ledger) = water;
     }
 
     /// What the next second must know of this one.
@@ -448,6 +477,9 @@ impl Plant {
         let flows = &mut record.flows;
         let mut drive = self.road(sight, state, &segment, flows);
         self.constant_loads::<S>(sight, period, flows);
+        let moment = air_side::Moment { step_s: segment.step_s, speed_m_s: segment.speed_m_s };
+        let blown_w_k = air_side::step::<S>(sight, state, period, moment, record);
+        let flows = &mut record.flows;
 
         // Driving comes before thermal loads: they have what it leaves.
         let battery_k = state.temperatures_k[shape.battery.index()];
@@ -474,7 +506,7 @@ impl Plant {
         }
         let spare_w = left_w.max(0.0);
 
-        let conditions = self.conditions::<S>(sight, state, period, segment.speed_m_s);
+        let conditions = self.conditions::<S>(sight, state, period, &blown_w_k, segment.speed_m_s);
         let start_k = state.temperatures_k;
         let given = Given {
             capacities_j_k: &self.network.capacities_j_k,
@@ -581,7 +613,11 @@ impl Plant {
         flows[Flow::FAN] = period.front.fan_w;
         each!(S::cabins(shape) => |place, cabin| {
             flows[cabin.blower_flow] = period.ventilation[place].blower_power_w;
-            flows[cabin.solar_flow] = disturbance.solar_gain_w * parameters.solar_shares[place];
+            let sun_w = disturbance.solar_gain_w * parameters.solar_shares[place];
+            let onto_furnishings = parameters.cabins[place].solar_to_furnishings_share;
+            flows[cabin.solar_flow] = sun_w * (1.0 - onto_furnishings);
+            flows[cabin.solar_soft_flow] = 0.5 * sun_w * onto_furnishings;
+            flows[cabin.solar_hard_flow] = 0.5 * sun_w * onto_furnishings;
             let occupants = disturbance.occupants * parameters.occupant_shares[place];
             flows[cabin.occupants_flow] = occupants * parameters.cabins[place].occupant_heat_w;
         });
@@ -594,6 +630,7 @@ impl Plant {
         sight: Sight<'_>,
         state: &State,
         period: &'a Period,
+        blown_w_k: &[f64; CABIN_PLACES],
         speed_m_s: f64,
     ) -> Conditions<'a> {
         let Sight { vehicle, parameters, shape, disturbance } = sight;
@@ -604,6 +641,7 @@ impl Plant {
         let mut cabins = [CabinConditions::default(); CABIN_PLACES];
         each!(S::cabins(shape) => |place, cabin| {
             cabins[place] = cabin_conditions(sight, (place, cabin), state, period, speed_m_s);
+            cabins[place].panel_w_k += blown_w_k[place];
         });
         let mut conditions = Conditions {
             rates_w_k: &period.rates_w_k,

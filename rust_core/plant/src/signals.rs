@@ -6,8 +6,10 @@ use crate::architecture::declaration::Level;
 use crate::architecture::kind::Bounds;
 use crate::architecture::layout::{ExchangerLayout, ExchangerSide, Layout};
 use crate::architecture::ranks as rank;
+use crate::components::equivalent_temperature::{air_speed_m_s, equivalent_temperature_degc};
 use crate::config::ZERO_CELSIUS_K;
 use crate::flows::Flow;
+use crate::media::moist_air::relative_humidity;
 use crate::numerics::thermal_network::Node;
 use crate::plant::{Plant, StepRecord};
 use crate::state::State;
@@ -27,6 +29,11 @@ pub struct View<'a> {
 }
 
 impl View<'_> {
+    /// Temperature of the cabin that counts for comfort [K].
+    fn cabin_k(&self) -> f64 {
+        self.state.temperatures_k[self.plant.layout().cabins[0].air.index()]
+    }
+
     fn recorded(&self, read: impl Fn(&StepRecord) -> f64) -> f64 {
         self.record.map_or(0.0, read)
     }
@@ -176,6 +183,7 @@ impl SignalTable {
             table.add_refrigeration();
             table.add_refrigerant_solve();
         }
+        table.add_cabin_air();
         table.add_checks();
         table.add_connections(layout);
         table.add_flows(layout);
@@ -368,6 +376,88 @@ impl SignalTable {
                 "condenser heat flow over compressor power, evaporator heat flow while a cabin is cooled; 0 at rest",
                 |v| v.recorded(|r| coefficient_of_performance(v, r)),
             ),
+        ]);
+    }
+
+    /// Air of the cabin that counts for comfort.
+    fn add_cabin_air(&mut self) {
+        self.rows.extend([
+            function("ambient_humidity_ratio", "kg/kg", "water in a kilogram of dry ambient air", |v| {
+                v.disturbance.ambient_humidity_ratio
+            })
+            .within(0.0, 0.04),
+            function("cabin_humidity_ratio", "kg/kg", "water in a kilogram of dry cabin air", |v| {
+                v.state.cabin_air[0].humidity_ratio
+            })
+            .within(0.0, 0.04),
+            function(
+                "cabin_relative_humidity",
+                "-",
+                "relative humidity of the cabin air, against ice below 0 degC",
+                |v| relative_humidity(v.state.cabin_air[0].humidity_ratio, v.cabin_k()),
+            )
+            .within(0.0, 1.0),
+            function("cabin_co2_ppm", "ppm", "carbon dioxide in the cabin air", |v| {
+                v.state.cabin_air[0].co2 * 1e6
+            })
+            .within(400.0, 3000.0),
+            function("windscreen_temperature_degc", "degC", "inner surface of the windscreen", |v| {
+                v.state.cabin_air[0].windscreen_k - ZERO_CELSIUS_K
+            }),
+            function(
+                "windscreen_fog_margin_k",
+                "K",
+                "inner surface of the windscreen less dew point of the cabin air; fog below 0",
+                |v| v.state.cabin_air[0].fog_margin_k(),
+            )
+            .within(-20.0, 20.0),
+            function("windscreen_water_kg", "kg", "water on the inner surface of the windscreen", |v| {
+                v.state.cabin_air[0].film_kg
+            })
+            .within(0.0, 0.1),
+            function(
+                "cabin_equivalent_temperature_degc",
+                "degC",
+                "uniform room with still air that takes as much heat from the occupants (ISO 14505-2)",
+                |v| {
+                    let cabin = &v.plant.layout().cabins[0];
+                    let degc = |node: Node| v.state.temperatures_k[node.index()] - ZERO_CELSIUS_K;
+                    let speed_m_s = air_speed_m_s(v.recorded(|record| record.supply_air_kg_s));
+                    let radiant_degc = 0.5 * (degc(cabin.soft) + degc(cabin.hard));
+                    equivalent_temperature_degc(degc(cabin.air), radiant_degc, speed_m_s)
+                },
+            ),
+            function("supply_air_flow_kg_s", "kg/s", "air that the blower of the cabin moves", |v| {
+                v.recorded(|record| record.supply_air_kg_s)
+            })
+            .within(0.0, 0.2),
+        ]);
+        self.add_water_flows();
+    }
+
+    fn add_water_flows(&mut self) {
+        let water = |name, description, read: fn(&View<'_>) -> f64| {
+            function(name, "kg/s", description, read).within(-0.005, 0.005)
+        };
+        self.rows.extend([
+            water("fresh_air_water_flow_kg_s", "water that comes in with fresh air", |v| {
+                v.recorded(|r| r.water[0].fresh_kg_s)
+            }),
+            water("occupant_water_flow_kg_s", "water that the occupants give off", |v| {
+                v.recorded(|r| r.water[0].occupants_kg_s)
+            }),
+            water("exhaust_water_flow_kg_s", "water that leaves with the exhaust", |v| {
+                v.recorded(|r| r.water[0].exhaust_kg_s)
+            }),
+            water("cooling_core_water_flow_kg_s", "water that condenses on the cooling core", |v| {
+                v.recorded(|r| r.water[0].core_kg_s)
+            }),
+            water("windscreen_water_flow_kg_s", "water that condenses on the windscreen", |v| {
+                v.recorded(|r| r.water[0].windscreen_kg_s)
+            }),
+            function("water_residual_kg_s", "kg/s", "residual of the ledger of water", |v| {
+                v.recorded(|r| r.water_ledger.residual_kg_s)
+            }),
         ]);
     }
 

@@ -1,8 +1,11 @@
 //! The whole state of a vehicle: plain data, so that a snapshot is a copy.
 
-use crate::architecture::layout::{BRANCH_PLACES, FRONT_END_PLACES, HEATER_PLACES, LOOP_PLACES};
+use crate::architecture::layout::{
+    BRANCH_PLACES, CABIN_PLACES, FRONT_END_PLACES, HEATER_PLACES, LOOP_PLACES,
+};
 use crate::circuits::refrigeration_loop::RefrigerationState;
 use crate::components::battery::BatteryState;
+use crate::components::cabin_air::CabinAir;
 use crate::components::pid::ResetPid;
 use crate::components::pump::PumpState;
 use crate::components::thermal_switch::ThermalSwitches;
@@ -17,6 +20,8 @@ pub struct State {
     pub time_s: f64,
     /// Temperatures of the thermal nodes [K].
     pub temperatures_k: NodeValues,
+    /// Air of each cabin.
+    pub cabin_air: [CabinAir; CABIN_PLACES],
     /// Battery charge and polarisation.
     pub battery: BatteryState,
     /// Which branches are connected.

@@ -74,7 +74,7 @@ impl Experiment {
     /// The vehicle before the first step.
     #[must_use]
     pub fn start(&self) -> Run {
-        let state = self.plant.parked(&self.initial);
+        let state = self.plant.parked_in(&self.initial, self.ambient_humidity_ratio);
         Run {
             memory: self.rules.awake(&self.plant, &state),
             state,

@@ -177,6 +177,13 @@ impl RefrigerationState {
         Self { compressor: CompressorState::parked(), last: None }
     }
 
+    /// How far the refrigerant evaporated below what entered its evaporator in the last step [K]; none at rest.
+    #[must_use]
+    #[inline]
+    pub fn evaporator_distance_k(&self) -> Option<f64> {
+        self.last.filter(|_| self.compressor.running).map(|last| last.distances[0])
+    }
+
     /// Keeps a solution, if the machine ran, and how it changed from that of the step before.
     fn remember(&mut self, boundary: &LoopBoundary, result: &LoopResult) {
         if !result.running() {

@@ -7,8 +7,10 @@ pub mod battery;
 pub mod battery_tables;
 pub mod body;
 pub mod cabin;
+pub mod cabin_air;
 pub mod compressor;
 pub mod coolant_loop;
+pub mod equivalent_temperature;
 pub mod exhaust_recovery;
 pub mod heat_exchanger;
 pub mod heater;
@@ -26,6 +28,8 @@ pub mod thermal_mass;
 pub mod thermal_switch;
 pub mod transmission;
 pub mod underbody_plate;
+pub mod wet_core;
+pub mod windscreen;
 
 use crate::architecture::kind::component_kinds;
 

@@ -194,6 +194,7 @@ impl RuleBased for Hpcu {
         self.trim_requests(state, memory, mode, demand);
         let (parameters, lack_k) = (&self.parameters, self.cabin_error_k(state, mode));
         self.roles.blow(parameters.options.blower_level(mode, parameters.blower_level, lack_k), demand);
+        parameters.options.mind_air(&self.roles, state, demand);
         if let Some(row) = self.roles.compressor_row {
             demand[row] = self.compressor_power_w(plant, state, memory, mode);
         }

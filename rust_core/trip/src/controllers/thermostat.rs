@@ -117,6 +117,7 @@ impl RuleBased for Thermostat {
         let parameters = &self.parameters;
         let level = parameters.options.blower_level(mode, parameters.blower_level, self.lack_k(state, mode));
         self.roles.blow(level, demand);
+        parameters.options.mind_air(&self.roles, state, demand);
         let cabin_k = state.temperatures_k[self.roles.cabin_air.index()];
         let cold = cabin_k < self.parameters.ptc_below_degc.kelvin();
         self.roles.allow_heaters(self.strategy.ptc && mode == CabinMode::Heating && cold, demand);

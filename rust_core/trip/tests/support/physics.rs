@@ -17,11 +17,34 @@ const ROUNDING_W: f64 = 1e-6;
 pub fn check(step: &Step<'_>) {
     let entry = step.record.ledger;
     assert!(entry.relative() < TOLERANCE, "at {} s: {entry:?}", step.after.time_s);
+    check_air(step);
     check_finite(step);
     check_branches(step);
     check_limits(step);
     check_exchangers(step);
     check_supply_air(step);
+}
+
+/// Water of every cabin balances, counted from states and parameters; none of it is negative.
+fn check_air(step: &Step<'_>) {
+    let entry = step.record.water_ledger;
+    assert!(entry.relative() < TOLERANCE, "at {} s: {entry:?}", step.after.time_s);
+    for (place, share) in step.plant.vehicle.cabins.iter().enumerate() {
+        let (air, water) = (&step.after.cabin_air[place], &step.record.water[place]);
+        assert!(air.humidity_ratio >= 0.0 && air.humidity_ratio < 1.0, "{air:?}");
+        assert!(air.co2 >= 419e-6 && air.co2 < 0.01, "{air:?}");
+        assert!(
+            air.film_kg >= 0.0 && water.core_kg_s >= 0.0 && water.drained_kg_s >= 0.0,
+            "{air:?} {water:?}"
+        );
+        assert!((200.0..450.0).contains(&air.windscreen_k), "{air:?}");
+        let stored_kg = |air| share.parameters.air.water_kg(air);
+        let gained_kg = stored_kg(air) - stored_kg(&step.before.cabin_air[place]);
+        let entered_kg_s = water.fresh_kg_s + water.occupants_kg_s;
+        let left_kg_s = water.exhaust_kg_s + water.core_kg_s + water.drained_kg_s;
+        let residual_kg = gained_kg - (entered_kg_s - left_kg_s);
+        assert!(residual_kg.abs() < 1e-9 * (gained_kg.abs() + entered_kg_s + left_kg_s + 1e-6), "{water:?}");
+    }
 }
 
 fn check_finite(step: &Step<'_>) {
