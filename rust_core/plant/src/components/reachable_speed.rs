@@ -59,12 +59,12 @@ mod tests {
     use super::*;
     use crate::components::body::{BodyParameters, RoadLoad};
     use crate::config::vehicle::VehicleParameters;
+    use crate::media::air;
     use proptest::prelude::*;
 
-    const DENSITY_KG_M3: f64 = 1.2;
-
     fn attempt(vehicle: &VehicleParameters, start_m_s: f64, end_m_s: f64) -> (f64, Powertrain<'_>) {
-        let road: RoadLoad = BodyParameters::road_load(&vehicle.body, start_m_s, end_m_s, 1.0, DENSITY_KG_M3);
+        let air = air::at_temperature(293.15);
+        let road: RoadLoad = BodyParameters::road_load(&vehicle.body, start_m_s, end_m_s, 1.0, &air);
         let powertrain = Powertrain {
             motor: &vehicle.motor,
             transmission: &vehicle.transmission,
