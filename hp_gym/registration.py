@@ -11,7 +11,7 @@ ENV_ID: Final = "EVHeatPump-v0"
 """The default: one choice for each component."""
 
 LONGEST_TRIP_STEPS: Final = 1_000_900
-"""As many seconds as the longest cycle there can be and the longest delay: cuts no trip, whatever the interval."""
+"""Seconds of the longest cycle and the longest delay there can be: cuts no trip, whatever the interval."""
 
 _DEFAULT: Final = ("env:EVHeatPumpEnv", "vector_env:EVHeatPumpVectorEnv")
 
