@@ -35,6 +35,7 @@ mod config {
 #[path = "src/media"]
 mod media {
     pub mod air;
+    pub mod moist_air;
 }
 
 #[allow(dead_code, clippy::all, reason = "the crate uses and checks all of it")]

@@ -7,7 +7,6 @@ use crate::architecture::layout::{
 };
 use crate::circuits::branches::{self, BranchTable, BranchTemperatures};
 use crate::circuits::exchangers::{self, ExchangerTable, Sides, Surroundings};
-use crate::circuits::front_ends::FrontAirs;
 use crate::circuits::refrigeration_cycle::RefrigerationCycle;
 use crate::circuits::refrigeration_loop::{
     CompressorAllowance, Limit, LoopBoundary, LoopResult, RefrigerationState,
@@ -15,6 +14,7 @@ use crate::circuits::refrigeration_loop::{
 use crate::command::{ActuatorRanges, Command, Demand};
 use crate::components::battery::{Battery, BatteryState, BatteryStep, CircuitStep, PowerLimits};
 use crate::components::exhaust_recovery::{ExhaustRecovery, RecoveryTemperatures};
+use crate::components::frost::{Frost, Met};
 use crate::components::pid::ResetPid;
 use crate::components::powertrain::{Powertrain, PowertrainFlow};
 use crate::components::pump::PumpState;
@@ -227,6 +227,7 @@ impl Plant {
             condensing_pressure_pa: resting_pa.unwrap_or(0.0),
             entered_w: [0.0; LOOP_PLACES],
             front_end_rise_k: [0.0; FRONT_END_PLACES],
+            frosts: [Frost::default(); FRONT_END_PLACES],
             heater_power_w: 0.0,
             compressor_power_w: 0.0,
         }
@@ -332,7 +333,7 @@ impl Plant {
         } else {
             self.substeps::<S>(sight, state, &period, record, tamper);
         }
-        self.end_period::<S>(shape, state, &period.front, &record.flows);
+        self.end_period::<S>(sight, state, &period, &record.flows);
     }
 
     /// All sub-steps of a second; the record becomes their mean.
@@ -366,7 +367,8 @@ impl Plant {
 
     /// What the next second must know of this one.
     #[inline(always)]
-    fn end_period<S: Shape>(&self, shape: &Indices<'_>, state: &mut State, front: &FrontAirs, flows: &Flows) {
+    fn end_period<S: Shape>(&self, sight: Sight<'_>, state: &mut State, period: &Period, flows: &Flows) {
+        let Sight { shape, parameters, disturbance, .. } = sight;
         state.time_s += CONTROL_PERIOD_S;
         state.heater_power_w = 0.0;
         each!(S::heaters(shape) => |place, heater| {
@@ -378,9 +380,7 @@ impl Plant {
         state.pressure_pid.applied(&self.controls.pressure, state.compressor_power_w);
         let mut front_end_w = [0.0; FRONT_END_PLACES];
         each!(S::branches(shape) => |_, branch| {
-            if let BranchSide::Ambient(end) = branch.side
-                && shape.front_ends[end].shares_air
-            {
+            if let BranchSide::Ambient(end) = branch.side {
                 let heat_w = flows[branch.flow];
                 front_end_w[end] += if branch.out_of_loop { heat_w } else { -heat_w };
             }
@@ -388,7 +388,17 @@ impl Plant {
         exchangers::remember::<S>(shape, flows, &mut state.entered_w, &mut front_end_w);
         each!(S::front_ends(shape) => |place, indices| {
             if indices.shares_air {
-                state.front_end_rise_k[place] = front_end_w[place] / front.airs[place].rate_w_k;
+                state.front_end_rise_k[place] = front_end_w[place] / period.front.airs[place].rate_w_k;
+            }
+            if parameters.front_ends[place].frost.grows() {
+                let frost = &mut state.frosts[place];
+                let met = Met {
+                    air_k: period.front_end_air_k[place] - frost.rise_k,
+                    humidity_ratio: disturbance.ambient_humidity_ratio,
+                    taken_w: -front_end_w[place],
+                };
+                let (own, air) = (&parameters.front_ends[place].frost, &period.front.airs[place]);
+                frost.advance(own, air, &met, CONTROL_PERIOD_S);
             }
         });
     }

@@ -3,6 +3,7 @@
 use crate::architecture::layout::{BRANCH_PLACES, FRONT_END_PLACES, HEATER_PLACES, LOOP_PLACES};
 use crate::circuits::refrigeration_loop::RefrigerationState;
 use crate::components::battery::BatteryState;
+use crate::components::frost::Frost;
 use crate::components::pid::ResetPid;
 use crate::components::pump::PumpState;
 use crate::components::thermal_switch::ThermalSwitches;
@@ -37,6 +38,8 @@ pub struct State {
     pub entered_w: [f64; LOOP_PLACES],
     /// Temperature rise of the air in each front-end exchanger that may be in front of others, in the last step [K].
     pub front_end_rise_k: [f64; FRONT_END_PLACES],
+    /// Frost on each front-end exchanger.
+    pub frosts: [Frost; FRONT_END_PLACES],
     /// Power of all heaters in the last step [W].
     pub heater_power_w: f64,
     /// Compressor power of the last step [W].

@@ -10,6 +10,7 @@ pub mod cabin;
 pub mod compressor;
 pub mod coolant_loop;
 pub mod exhaust_recovery;
+pub mod frost;
 pub mod heat_exchanger;
 pub mod heater;
 mod hose;
