@@ -122,11 +122,7 @@ impl Controls {
             period.rates_w_k[circuit] = state.flow_kg_s * parameters.specific_heats_j_kg_k[circuit];
             period.pumps_w[circuit] = pump.power_w(state.flow_kg_s);
         });
-        let flows = BranchFlows {
-            rates_w_k: period.rates_w_k,
-            ventilation: period.ventilation,
-            speed_m_s: disturbance.mean_speed_m_s(),
-        };
+        let flows = BranchFlows { rates_w_k: period.rates_w_k, ventilation: period.ventilation };
         let mut requests_w = [0.0; BRANCH_PLACES];
         each!(S::branches(shape) => |i, branch| { requests_w[i] = period.demand.0[usize::from(branch.request_row)]; });
         let coolant_w_k = branches.coolant_rates_w_k::<S>(shape, &period.demand, &flows, &state.connected);
@@ -138,7 +134,7 @@ impl Controls {
             coolant_w_k: &coolant_w_k,
             compressor_w: period.compressor_demand_w,
         };
-        period.front = front_ends::blow::<S>(shape, parameters, (&flows, &disturbance.air), &asked);
+        period.front = front_ends::blow::<S>(shape, parameters, disturbance, &state.frosts, &asked);
         let largest_w_k = branches.largest_conductances_w_k::<S>(
             shape,
             &flows,
@@ -202,11 +198,12 @@ fn enter_air<S: Shape>(sight: Sight<'_>, state: &State, period: &mut Period) {
     });
 }
 
-/// Air at each front-end exchanger: ambient, warmed or cooled by the exchangers before it in the last second.
+/// Air at each front-end exchanger: ambient, warmed or cooled by the exchangers before it in the last second, and
+/// warmer by what vapour that becomes frost gives off.
 #[inline(always)]
 pub(crate) fn enter_front_end_air<S: Shape>(sight: Sight<'_>, state: &State, period: &mut Period) {
     each!(S::front_ends(sight.shape) => |place, indices| {
-        let mut air_k = sight.disturbance.air.temperature_k;
+        let mut air_k = sight.disturbance.air.temperature_k + state.frosts[place].rise_k;
         if indices.shares_air {
             let mut before = indices.behind;
             while let Some(other) = before {

@@ -8,7 +8,6 @@ use crate::architecture::layout::{
 };
 use crate::circuits::branches::{self, BranchTable, BranchTemperatures};
 use crate::circuits::exchangers::{self, ExchangerTable, Sides, Surroundings};
-use crate::circuits::front_ends::FrontAirs;
 use crate::circuits::refrigeration_cycle::RefrigerationCycle;
 use crate::circuits::refrigeration_loop::{
     CompressorAllowance, Limit, LoopBoundary, LoopResult, RefrigerationState,
@@ -18,6 +17,7 @@ use crate::components::battery::{Battery, BatteryState, BatteryStep, CircuitStep
 use crate::components::body::RoadLoad;
 use crate::components::cabin_air::{CabinAir, WaterFlows};
 use crate::components::exhaust_recovery::{ExhaustRecovery, RecoveryTemperatures};
+use crate::components::frost::{Frost, Met};
 use crate::components::pid::ResetPid;
 use crate::components::powertrain::{Powertrain, PowertrainFlow};
 use crate::components::pump::PumpState;
@@ -257,6 +257,7 @@ impl Plant {
             entered_w: [0.0; LOOP_PLACES],
             front_end_rise_k: [0.0; FRONT_END_PLACES],
             short_of_power: false,
+            frosts: [Frost::default(); FRONT_END_PLACES],
             heater_power_w: 0.0,
             compressor_power_w: 0.0,
         }
@@ -376,7 +377,7 @@ impl Plant {
         } else {
             self.substeps::<S>(sight, state, &period, record, tamper);
         }
-        self.end_period::<S>(shape, state, &period.front, &record.flows);
+        self.end_period::<S>(sight, state, &period, &record.flows);
     }
 
     /// Lowest coolant and air flows while the battery cannot give what driving asks for.
@@ -429,7 +430,8 @@ impl Plant {
 
     /// What the next second must know of this one.
     #[inline(always)]
-    fn end_period<S: Shape>(&self, shape: &Indices<'_>, state: &mut State, front: &FrontAirs, flows: &Flows) {
+    fn end_period<S: Shape>(&self, sight: Sight<'_>, state: &mut State, period: &Period, flows: &Flows) {
+        let Sight { shape, parameters, disturbance, .. } = sight;
         state.time_s += CONTROL_PERIOD_S;
         state.heater_power_w = 0.0;
         each!(S::heaters(shape) => |place, heater| {
@@ -441,9 +443,7 @@ impl Plant {
         state.pressure_pid.applied(&self.controls.pressure, state.compressor_power_w);
         let mut front_end_w = [0.0; FRONT_END_PLACES];
         each!(S::branches(shape) => |_, branch| {
-            if let BranchSide::Ambient(end) = branch.side
-                && shape.front_ends[end].shares_air
-            {
+            if let BranchSide::Ambient(end) = branch.side {
                 let heat_w = flows[branch.flow];
                 front_end_w[end] += if branch.out_of_loop { heat_w } else { -heat_w };
             }
@@ -451,7 +451,17 @@ impl Plant {
         exchangers::remember::<S>(shape, flows, &mut state.entered_w, &mut front_end_w);
         each!(S::front_ends(shape) => |place, indices| {
             if indices.shares_air {
-                state.front_end_rise_k[place] = front_end_w[place] / front.airs[place].rate_w_k;
+                state.front_end_rise_k[place] = front_end_w[place] / period.front.airs[place].rate_w_k;
+            }
+            if parameters.front_ends[place].frost.grows() {
+                let frost = &mut state.frosts[place];
+                let met = Met {
+                    air_k: period.front_end_air_k[place] - frost.rise_k,
+                    humidity_ratio: disturbance.ambient_humidity_ratio,
+                    taken_w: -front_end_w[place],
+                };
+                let (own, air) = (&parameters.front_ends[place].frost, &period.front.airs[place]);
+                frost.advance(own, air, &met, CONTROL_PERIOD_S);
             }
         });
     }

@@ -69,6 +69,8 @@ pub enum Reader {
     Connection(u8),
     /// Coolant flow of a loop [kg/s].
     LoopFlow(u8),
+    /// Frost on a front-end exchanger [kg].
+    Frost(u8),
 }
 
 /// Functions are the same if their signals have the same name.
@@ -78,7 +80,9 @@ impl PartialEq for Reader {
             (Self::Function(_), Self::Function(_)) => true,
             (Self::Temperature(a), Self::Temperature(b)) => a == b,
             (Self::Flow(a), Self::Flow(b)) => a == b,
-            (Self::Connection(a), Self::Connection(b)) | (Self::LoopFlow(a), Self::LoopFlow(b)) => a == b,
+            (Self::Connection(a), Self::Connection(b))
+            | (Self::LoopFlow(a), Self::LoopFlow(b))
+            | (Self::Frost(a), Self::Frost(b)) => a == b,
             _ => false,
         }
     }
@@ -94,6 +98,7 @@ impl Reader {
             Self::Temperature(node) => view.state.temperatures_k[node.index()] - ZERO_CELSIUS_K,
             Self::Flow(flow) => view.recorded(|record| record.flows[flow]),
             Self::Connection(member) => connection(view.plant.layout(), view.state, usize::from(member)),
+            Self::Frost(front_end) => view.state.frosts[usize::from(front_end)].mass_kg,
             Self::LoopFlow(circuit) => view.state.pumps[usize::from(circuit)].flow_kg_s,
         }
     }
@@ -186,6 +191,7 @@ impl SignalTable {
         table.add_cabin_air();
         table.add_checks();
         table.add_connections(layout);
+        table.add_frost(layout);
         table.add_flows(layout);
         table
     }
@@ -489,6 +495,15 @@ impl SignalTable {
         {
             let name = format!("{}_connection", member.name);
             self.rows.push(plain(name, "-", text.clone(), Reader::Connection(place as u8)));
+        }
+    }
+
+    fn add_frost(&mut self, layout: &Layout) {
+        for (place, front_end) in layout.front_ends.iter().enumerate() {
+            let member = &layout.members[front_end.member];
+            let name = format!("{}_frost_kg", member.name);
+            let text = format!("frost on the {}", member.label);
+            self.rows.push(plain(name, "kg", text, Reader::Frost(place as u8)).within(0.0, 2.0));
         }
     }
 

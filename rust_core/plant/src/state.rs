@@ -6,6 +6,7 @@ use crate::architecture::layout::{
 use crate::circuits::refrigeration_loop::RefrigerationState;
 use crate::components::battery::BatteryState;
 use crate::components::cabin_air::CabinAir;
+use crate::components::frost::Frost;
 use crate::components::pid::ResetPid;
 use crate::components::pump::PumpState;
 use crate::components::thermal_switch::ThermalSwitches;
@@ -44,6 +45,8 @@ pub struct State {
     pub front_end_rise_k: [f64; FRONT_END_PLACES],
     /// The battery had less in the last step than driving, pumps, blower and fan asked for.
     pub short_of_power: bool,
+    /// Frost on each front-end exchanger.
+    pub frosts: [Frost; FRONT_END_PLACES],
     /// Power of all heaters in the last step [W].
     pub heater_power_w: f64,
     /// Compressor power of the last step [W].

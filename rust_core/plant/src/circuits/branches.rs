@@ -45,8 +45,6 @@ pub struct BranchFlows {
     pub rates_w_k: [f64; LOOP_PLACES],
     /// Air of each cabin.
     pub ventilation: [Ventilation; CABIN_PLACES],
-    /// Mean vehicle speed [m/s].
-    pub speed_m_s: f64,
 }
 
 /// What branches do follows from these, a vehicle's parameters branch by branch.
@@ -220,7 +218,9 @@ impl BranchTable {
             if let BranchSide::Ambient(end) = branch.side
                 && connected[i]
             {
-                largest_w_k[i] = front.airs[end].to_coolant_w_k(coolant_w_k[i]);
+                let air = &front.airs[end];
+                let share = if branch.out_of_loop { 1.0 } else { air.source_share };
+                largest_w_k[i] = share * air.to_coolant_w_k(coolant_w_k[i]);
             }
         });
         for i in 0..places {

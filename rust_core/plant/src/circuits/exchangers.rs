@@ -323,11 +323,12 @@ impl Exchanger {
         let inlet_k = around.front_end_air_k[end];
         let frosts = level == Level::Evaporating && front_end.is_locked(around.ambient_k);
         let air = &around.front.airs[end];
+        let share = if level == Level::Evaporating { air.source_share } else { 1.0 };
         SideState {
             open: open && !frosts,
             inlet_k,
             capacity_rate_w_k: air.rate_w_k,
-            conductance_w_k: air.to_refrigerant_w_k(),
+            conductance_w_k: share * air.to_refrigerant_w_k(),
             limit: SupplyLimit { base_k: inlet_k, sensitivity_k_w: 0.0, limit_k: self.limit_k },
         }
     }

@@ -4,18 +4,18 @@
 //! the heat, all where even the full flow does not. In between it is proportional in the flow; conductance over flow is
 //! concave, so that never falls short. Exchangers in one stream of air have one fan, which follows the neediest.
 
-use super::branches::{BranchFlows, BranchValues, Connected};
+use super::branches::{BranchValues, Connected};
 use super::exchangers;
 use crate::architecture::declaration::Level;
 use crate::architecture::indices::Indices;
 use crate::architecture::layout::{BranchSide, ExchangerSide, FRONT_END_PLACES};
 use crate::command::Demand;
 use crate::components::air_stream::Draught;
-use crate::components::ambient_exchanger::AmbientExchangerParameters;
-use crate::components::heat_exchanger::{counterflow_conductance_w_k, inlet_conductance_w_k};
-use crate::media::air::{AirProperties, SPECIFIC_HEAT_J_KG_K};
+use crate::components::ambient_exchanger::{AmbientExchangerParameters, FrontAir};
+use crate::components::frost::{Frost, FrostEffect};
 use crate::network::shape::{Shape, each};
 use crate::step_parameters::StepParameters;
+use crate::surroundings::Disturbance;
 
 /// Heat that passes a front-end exchanger per power of the compressor, so that the fan need not wait for it [-]: both ways it is
 /// 2 to 4 at work.
@@ -23,37 +23,6 @@ const HEAT_PER_POWER: f64 = 3.0;
 
 /// Smallest temperature difference that a request is divided by [K].
 const SMALLEST_DIFFERENCE_K: f64 = 0.1;
-
-/// Air and conductance of one front-end exchanger.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct FrontAir {
-    /// Capacity rate of the air [W/K].
-    pub rate_w_k: f64,
-    /// Conductance at that flow [W/K].
-    pub ua_w_k: f64,
-}
-
-impl FrontAir {
-    /// Of an exchanger at an air flow.
-    #[inline(always)]
-    fn of(own: &AmbientExchangerParameters, flow_kg_s: f64) -> Self {
-        Self { rate_w_k: flow_kg_s * SPECIFIC_HEAT_J_KG_K, ua_w_k: own.conductance_w_k(flow_kg_s) }
-    }
-
-    /// Conductance between the inlets of air and coolant [W/K].
-    #[must_use]
-    #[inline(always)]
-    pub fn to_coolant_w_k(&self, coolant_w_k: f64) -> f64 {
-        counterflow_conductance_w_k(coolant_w_k, self.rate_w_k, self.ua_w_k)
-    }
-
-    /// Conductance between the air's inlet and a refrigerant at one temperature [W/K].
-    #[must_use]
-    #[inline(always)]
-    pub fn to_refrigerant_w_k(&self) -> f64 {
-        inlet_conductance_w_k(self.rate_w_k, self.ua_w_k)
-    }
-}
 
 /// What all front-end exchangers meet in a period.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -82,20 +51,26 @@ pub(crate) struct Asked<'a> {
 pub(crate) fn blow<S: Shape>(
     shape: &Indices<'_>,
     parameters: &StepParameters,
-    (flows, air): (&BranchFlows, &AirProperties),
+    disturbance: &Disturbance,
+    frosts: &[Frost; FRONT_END_PLACES],
     asked: &Asked<'_>,
 ) -> FrontAirs {
+    let (speed_m_s, air) = (disturbance.mean_speed_m_s(), &disturbance.air);
     let (mut draughts, mut needs) = ([Draught::default(); FRONT_END_PLACES], [0.0; FRONT_END_PLACES]);
+    let mut effects = [FrostEffect::NONE; FRONT_END_PLACES];
     each!(S::front_ends(shape) => |place, _| {
-        let draught = parameters.air_streams[place].draught(flows.speed_m_s);
+        let draught = parameters.air_streams[place].draught(speed_m_s);
         draughts[place] = draught;
+        if frosts[place].mass_kg > 0.0 {
+            effects[place] = parameters.front_ends[place].frost.effect(frosts[place].mass_kg);
+        }
         if draught.full_m3_s > draught.ram_m3_s {
             let own = &parameters.front_ends[place];
             let [ram, full] = [draught.ram_m3_s, draught.full_m3_s]
-                .map(|flow_m3_s| FrontAir::of(own, flow_m3_s * air.density_kg_m3));
+                .map(|flow_m3_s| FrontAir::of(own, flow_m3_s * frosted_kg_m3(air.density_kg_m3, &effects[place]), &effects[place]));
             let approach_k = parameters.air_streams[place].fan_approach_k;
             needs[place] = of_coolant::<S>(shape, place, asked, (&ram, &full))
-                .max(of_refrigerant(shape, (place, own, approach_k), air, asked, (&ram, &full)));
+                .max(of_refrigerant(shape, (place, own, approach_k), air.temperature_k, asked, (&ram, &full)));
         }
     });
     share_needs::<S>(shape, &mut needs);
@@ -103,13 +78,22 @@ pub(crate) fn blow<S: Shape>(
     each!(S::front_ends(shape) => |place, indices| {
         let Draught { ram_m3_s, full_m3_s } = draughts[place];
         let flow_m3_s = ram_m3_s + needs[place] * (full_m3_s - ram_m3_s);
-        blown.airs[place] = FrontAir::of(&parameters.front_ends[place], flow_m3_s * air.density_kg_m3);
+        let (own, effect) = (&parameters.front_ends[place], &effects[place]);
+        blown.airs[place] = FrontAir::of(own, flow_m3_s * frosted_kg_m3(air.density_kg_m3, effect), effect);
+        blown.airs[place].source_share =
+            own.frost.capacity_share(air.temperature_k, disturbance.ambient_humidity_ratio);
         // One fan for all that share their air: it counts with the first.
         if indices.behind.is_none() && needs[place] > 0.0 {
             blown.fan_w += parameters.air_streams[place].fan_power_w(ram_m3_s, flow_m3_s);
         }
     });
     blown
+}
+
+/// Mass of air that passes per volume that would pass without frost [kg/m3].
+#[inline(always)]
+fn frosted_kg_m3(density_kg_m3: f64, frost: &FrostEffect) -> f64 {
+    density_kg_m3 * frost.flow_share
 }
 
 /// Share of what the fan adds that a conductance needs [-].
@@ -143,7 +127,7 @@ fn of_coolant<S: Shape>(
 fn of_refrigerant(
     shape: &Indices<'_>,
     (place, own, approach_k): (usize, &AmbientExchangerParameters, f64),
-    air: &AirProperties,
+    ambient_k: f64,
     asked: &Asked<'_>,
     (ram, full): (&FrontAir, &FrontAir),
 ) -> f64 {
@@ -153,7 +137,7 @@ fn of_refrigerant(
     let open = shape.exchangers.iter().any(|exchanger| {
         exchanger.side == ExchangerSide::FrontEnd(place)
             && exchangers::is_open(exchanger, asked.demand)
-            && (exchanger.level == Level::Condensing || !own.is_locked(air.temperature_k))
+            && (exchanger.level == Level::Condensing || !own.is_locked(ambient_k))
     });
     let wanted_w_k = HEAT_PER_POWER * asked.compressor_w / approach_k;
     if open { share(wanted_w_k, ram.to_refrigerant_w_k(), full.to_refrigerant_w_k()) } else { 0.0 }

@@ -5,7 +5,10 @@ use crate::architecture::builder::Builder;
 use crate::architecture::declaration::MemberKind;
 use crate::architecture::kind::{Bounds, ComponentKind, Meets, Role};
 use crate::architecture::layout::FrontEndLayout;
+use crate::components::frost::{FrostEffect, FrostParameters};
+use crate::components::heat_exchanger::{counterflow_conductance_w_k, inlet_conductance_w_k};
 use crate::config::Celsius;
+use crate::media::air::SPECIFIC_HEAT_J_KG_K;
 use crate::numerics::elementary;
 use crate::parameters;
 
@@ -40,6 +43,9 @@ parameters! {
         ua_w_k: f64 = 10.0 .. 10000.0,
         /// Ambient temperature at or below which it is no heat source (frost interlock; paper: -10 degC) [degC].
         frost_interlock_degc: Celsius = -60.0 .. 20.0,
+        ;
+        /// Frost on it.
+        frost: FrostParameters,
     }
 }
 
@@ -63,13 +69,53 @@ impl AmbientExchangerParameters {
     }
 }
 
+/// Air and conductance of one front-end exchanger.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FrontAir {
+    /// Capacity rate of the air [W/K].
+    pub rate_w_k: f64,
+    /// Conductance at that flow [W/K].
+    pub ua_w_k: f64,
+    /// Share of that as heat source that defrosting leaves in the mean [-]; 1 where frost is followed instead.
+    pub source_share: f64,
+}
+
+impl FrontAir {
+    /// Of an exchanger with frost, if there is any, at an air flow.
+    #[must_use]
+    #[inline(always)]
+    pub fn of(own: &AmbientExchangerParameters, flow_kg_s: f64, frost: &FrostEffect) -> Self {
+        let air_w_k = own.conductance_w_k(flow_kg_s) * frost.air_share;
+        let ua_w_k = air_w_k / (1.0 + air_w_k * frost.layer_k_w);
+        Self { rate_w_k: flow_kg_s * SPECIFIC_HEAT_J_KG_K, ua_w_k, source_share: 1.0 }
+    }
+
+    /// Conductance between the inlets of air and coolant [W/K].
+    #[must_use]
+    #[inline(always)]
+    pub fn to_coolant_w_k(&self, coolant_w_k: f64) -> f64 {
+        counterflow_conductance_w_k(coolant_w_k, self.rate_w_k, self.ua_w_k)
+    }
+
+    /// Conductance between the air's inlet and a refrigerant at one temperature [W/K].
+    #[must_use]
+    #[inline(always)]
+    pub fn to_refrigerant_w_k(&self) -> f64 {
+        inlet_conductance_w_k(self.rate_w_k, self.ua_w_k)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn twice_the_air_passes_half_as_much_heat_again() {
-        let own = AmbientExchangerParameters { ua_w_k: 900.0, frost_interlock_degc: Celsius(-10.0) };
+        let own = AmbientExchangerParameters {
+            ua_w_k: 900.0,
+            frost_interlock_degc: Celsius(-10.0),
+            ..Default::default()
+        };
         assert!((own.conductance_w_k(1.0) - 900.0).abs() < 1e-9);
         assert!((own.conductance_w_k(2.0) / own.conductance_w_k(1.0) - 1.515_717).abs() < 1e-6);
     }

@@ -12,6 +12,7 @@ pub mod compressor;
 pub mod coolant_loop;
 pub mod equivalent_temperature;
 pub mod exhaust_recovery;
+pub mod frost;
 pub mod heat_exchanger;
 pub mod heater;
 mod hose;

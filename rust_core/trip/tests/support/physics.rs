@@ -5,6 +5,7 @@ use hp_plant::architecture::declaration::Level;
 use hp_plant::architecture::layout::{BranchSide, ExchangerSide};
 use hp_plant::circuits::refrigeration_cycle::RefrigerationCycle;
 use hp_plant::components::cabin::Ventilation;
+use hp_plant::components::frost::FrostEffect;
 use hp_plant::components::heat_exchanger::inlet_conductance_w_k;
 use hp_plant::components::refrigerant_exchanger::{CondenserStreams, EvaporatorStreams};
 use hp_plant::flows::Flow;
@@ -111,10 +112,10 @@ pub fn cabin_air(step: &Step<'_>, cabin: usize, state: &hp_plant::state::State) 
     (air, fresh * step.disturbance.air.temperature_k + recirculated * cabin_k)
 }
 
-/// Air at a front-end exchanger: ambient, warmed in the second before by the exchangers before it [K].
+/// Air at a front-end exchanger: ambient, warmed in the second before by the exchangers before it and by frost that grows [K].
 pub fn front_end_air_k(step: &Step<'_>, front_end: usize) -> f64 {
     let vehicle = &step.plant.vehicle;
-    let mut air_k = step.disturbance.air.temperature_k;
+    let mut air_k = step.disturbance.air.temperature_k + step.before.frosts[front_end].rise_k;
     let mut before = vehicle.layout.front_ends[front_end].behind;
     while let Some(other) = before {
         air_k += step.before.front_end_rise_k[other];
@@ -133,7 +134,12 @@ pub fn front_end_flow_kg_s(step: &Step<'_>, front_end: usize) -> Option<f64> {
     let fans = vehicle.layout.front_ends.iter().filter(|end| end.behind.is_none()).count();
     let level = if fan_w > 0.0 { (fan_w / stream.fan_power_w).cbrt() } else { 0.0 };
     let flow_m3_s = ram_m3_s.hypot(level * stream.fan_air_flow_m3_s);
-    (fans == 1 || fan_w == 0.0).then_some(flow_m3_s * step.disturbance.air.density_kg_m3)
+    let frosted = frost_effect(step, front_end).flow_share;
+    (fans == 1 || fan_w == 0.0).then_some(flow_m3_s * frosted * step.disturbance.air.density_kg_m3)
+}
+
+fn frost_effect(step: &Step<'_>, front_end: usize) -> FrostEffect {
+    step.plant.vehicle.front_ends[front_end].frost.effect(step.before.frosts[front_end].mass_kg)
 }
 
 /// No branch carries heat from cold to hot, by the temperatures at the end of the step.
@@ -233,9 +239,18 @@ pub fn stream(step: &Step<'_>, place: usize) -> Option<(f64, f64, f64)> {
         }
         ExchangerSide::FrontEnd(front_end) => {
             let flow_kg_s = front_end_flow_kg_s(step, front_end)?;
-            let (rate_w_k, ua_w_k) =
-                (1006.0 * flow_kg_s, vehicle.front_ends[front_end].ua_w_k * flow_kg_s.powf(0.6));
-            (front_end_air_k(step, front_end), rate_w_k, inlet_conductance_w_k(rate_w_k, ua_w_k))
+            let (own, frost) = (&vehicle.front_ends[front_end], frost_effect(step, front_end));
+            let clean_w_k = own.ua_w_k * flow_kg_s.powf(0.6) * frost.air_share;
+            let (rate_w_k, ua_w_k) = (1006.0 * flow_kg_s, 1.0 / (1.0 / clean_w_k + frost.layer_k_w));
+            let disturbance = step.disturbance;
+            let share = match exchanger.level {
+                Level::Condensing => 1.0,
+                Level::Evaporating => own
+                    .frost
+                    .capacity_share(disturbance.air.temperature_k, disturbance.ambient_humidity_ratio),
+            };
+            let conductance_w_k = share * inlet_conductance_w_k(rate_w_k, ua_w_k);
+            (front_end_air_k(step, front_end), rate_w_k, conductance_w_k)
         }
     })
 }
