@@ -273,6 +273,7 @@ fn modern_rules_without_their_options_are_the_papers() {
     let modern = changed("hpcu-modern", |table| {
         table.remove("options");
         table.insert("ptc_from_deviation_k".to_owned(), (-100.0).into());
+        table.insert("heating_recirculation".to_owned(), 0.0.into());
     });
     let path = modern.path().to_str().expect("plain name");
     assert_eq!(commands(path, "ours/commute-minus5"), commands("hpcu", "ours/commute-minus5"));
