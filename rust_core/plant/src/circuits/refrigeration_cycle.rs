@@ -199,7 +199,8 @@ impl RefrigerationCycle {
                     isentropic_efficiency: efficiency.isentropic,
                 });
                 // The losses heat all gas, the injected too.
-                let loss_j_kg = injected.work_j_kg * (self.gas_per_compression - 1.0) / (injected.share + 1.0);
+                let loss_j_kg =
+                    injected.work_j_kg * (self.gas_per_compression - 1.0) / (injected.share + 1.0);
                 (
                     injected.share,
                     injected.evaporator_inlet_j_kg,
