@@ -13,6 +13,9 @@ use hp_plant::media::refrigerant::RefrigerantTable;
 /// What is not published of the case is assumed: the usual frosting point (2 degC, wet bulb 1 degC: 84 %), the published 1.0 m/s
 /// through 0.34 m2, 4 m2 of louvred fins (so 137 W/(m2 K)), Hayashi's density at -6 degC; indoor side and speed so that heat
 /// and COP without frost are the published ones. The gap between the fins follows from the published pressure drop.
+///
+/// Not a prediction from first principles: area and density were chosen inside their ranges after the first results were seen. With
+/// 5 m2 and 160 kg/m3 only 0.7 mm grow, and 2.9 kW instead of 1.8 are left; the loss rises steeply with the last tenths.
 const AMBIENT_K: f64 = 275.15;
 const RELATIVE_HUMIDITY: f64 = 0.84;
 const AIR_KG_S: f64 = 0.44;
