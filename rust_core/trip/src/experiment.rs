@@ -4,10 +4,9 @@ use crate::controllers::Rules;
 use crate::controllers::file::Controller;
 use crate::drive_cycle::DriveCycle;
 use crate::heat_demand_commander::HeatDemandCommander;
-use crate::kinds::SCENARIO;
 use crate::scenario::{ClimateParameters, ScenarioParameters, known_member};
 use hp_plant::config::initial::InitialParameters;
-use hp_plant::config::library::{self, Override};
+use hp_plant::config::library::Override;
 use hp_plant::error::{PlantError, PlantResult};
 use hp_plant::media::air::AirProperties;
 use hp_plant::plant::{Disturbance, Plant};
@@ -73,7 +72,7 @@ impl Experiment {
                 allowed: format!("must begin with one of {}", known.join(", ")),
             });
         }
-        let mut scenario: ScenarioParameters = library::load(SCENARIO, scenario_name, &part("scenario"))?;
+        let mut scenario = ScenarioParameters::load(scenario_name, &part("scenario"))?;
         if let Some(vehicle) = vehicle {
             vehicle.clone_into(&mut scenario.vehicle);
         }
