@@ -28,8 +28,8 @@ SHOWN = {
         ),
     ],
     "03_another_refrigerant": [
-        rf"{name}: COP \d\.\d\d, [12]\d\.\d bar at most, 0 breaches"
-        for name in ("R134a.*", "R1234yf.*", "R152a.*")
+        rf"{name}: COP \d\.\d\d, \d+\.\d bar at most, 0 breaches"
+        for name in ("R134a.*", r"R1234ze\(E\).*", "R1234yf.*", "R290.*", "R152a.*")
     ],
     "04_controllers": [
         rf"{name}: \d\.\d\d kWh, \d+\.\d K off target"

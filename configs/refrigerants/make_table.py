@@ -10,6 +10,7 @@ the header: a vehicle gets those that it does not give itself together with the 
 """
 
 import argparse
+import shlex
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -76,7 +77,7 @@ COLUMNS = (
 
 EXPLANATION = """\
 # Saturation-based property table of {fluid}. Generated, do not edit.
-# Source: CoolProp {version} (HEOS), command: python configs/refrigerants/make_table.py {fluid} <output>
+# Source: CoolProp {version} (HEOS), command: python configs/refrigerants/make_table.py {quoted} <output>
 # Every column is interpolated over temperature_k (saturation, uniform grid) with a not-a-knot cubic spline.
 # vapour_{{enthalpy,density,entropy}}_k: coefficient of superheat^k, 0..10 K [J/kg, kg/m3, J/(kg K) per K^k]
 # liquid_enthalpy_k: coefficient of subcooling^k, subcooling 0..10 K, at saturation pressure [J/kg per K^k]
@@ -220,6 +221,7 @@ def write_table(name: str, path: Path, **given: float | None) -> None:
     lines += [",".join(f"{value:.11g}" for value in row(fluid, t, distance)) for t in grid(fluid)]
     explanation = EXPLANATION.format(
         fluid=name,
+        quoted=shlex.quote(name),
         version=CoolProp.__version__,
         highest=HIGHEST_DISCHARGE_K,
         limits=limits,

@@ -4,11 +4,10 @@ use crate::controllers::Rules;
 use crate::controllers::file::Controller;
 use crate::drive_cycle::DriveCycle;
 use crate::heat_demand_commander::HeatDemandCommander;
-use crate::kinds::SCENARIO;
 use crate::pace::Pace;
 use crate::scenario::{ClimateParameters, ScenarioParameters, known_member};
 use hp_plant::config::initial::InitialParameters;
-use hp_plant::config::library::{self, Override};
+use hp_plant::config::library::Override;
 use hp_plant::error::{PlantError, PlantResult};
 use hp_plant::media::air::AirProperties;
 use hp_plant::plant::{Disturbance, Plant};
@@ -76,7 +75,7 @@ impl Experiment {
                 allowed: format!("must begin with one of {}", known.join(", ")),
             });
         }
-        let mut scenario: ScenarioParameters = library::load(SCENARIO, scenario_name, &part("scenario"))?;
+        let mut scenario = ScenarioParameters::load(scenario_name, &part("scenario"))?;
         if let Some(vehicle) = vehicle {
             vehicle.clone_into(&mut scenario.vehicle);
         }

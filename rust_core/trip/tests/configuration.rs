@@ -67,6 +67,21 @@ fn unknown_scenario_lists_the_known_ones() {
 }
 
 #[test]
+fn a_scenario_without_a_soak_temperature_starts_at_its_ambient() {
+    let soaked_degc = |scenario: &str, changes: &[&str]| {
+        let changes: Vec<Override> =
+            changes.iter().map(|change| Override::parse(change).expect("an assignment")).collect();
+        let experiment = Experiment::load(scenario, None, &changes).unwrap_or_else(|error| panic!("{error}"));
+        experiment.initial.soak_temperature_degc.0
+    };
+    let cold = "scenario.climate.ambient_temperature_degc=-7";
+    assert_eq!(soaked_degc("jeffs2019/case1-1", &[]), 0.0);
+    assert_eq!(soaked_degc("jeffs2019/case1-1", &[cold]), -7.0);
+    assert_eq!(soaked_degc("jeffs2019/case1-1", &[cold, "scenario.initial.soak_temperature_degc=5"]), 5.0);
+    assert_eq!(soaked_degc("ours/cold-start-minus20", &[]), -20.0);
+}
+
+#[test]
 fn connection_that_a_member_does_not_have_is_refused() {
     let message =
         error_with(r#"scenario.connection_schedule=[{ from_s = 0, member = "motor", connection = "htc" }]"#);

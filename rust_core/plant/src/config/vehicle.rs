@@ -2,7 +2,7 @@
 
 use super::kinds::{ARCHITECTURE, FLUID_LIMITS, VEHICLE};
 use super::library::{self, Override};
-use super::{Validate, Violation, check_range, deserialized};
+use super::{Validate, Violation, check_range, deserialized, orders};
 use crate::architecture::declaration::{Declaration, MemberKind, VEHICLE_SECTIONS};
 use crate::architecture::flaw::{Flaw, among};
 use crate::architecture::flows::FlowRow;
@@ -486,6 +486,7 @@ fn architecture_name_of(parameters: &VehicleParameters) -> String {
 impl VehicleParameters {
     /// What single ranges cannot tell.
     fn check(&self) -> Result<(), Violation> {
+        orders::check(self)?;
         let switch = &self.controls.thermal_switch;
         if switch.opening_difference_k > switch.closing_difference_k {
             return Err(Violation::new(
