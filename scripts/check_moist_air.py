@@ -1,6 +1,6 @@
 """Oracle of the air side: the figures that Rust tests compare with, printed from CoolProp and PsychroLib.
 
-Needs the packages CoolProp and psychrolib: `uv run --with coolprop --with psychrolib scripts/check_moist_air.py`.
+With CoolProp and PsychroLib: `uv run --with coolprop --with psychrolib scripts/check_moist_air.py`.
 """
 
 import math
@@ -75,7 +75,9 @@ def main() -> None:
     print_moist_air()
     for case in ((35.0, 0.4, 3.0), (25.0, 0.5, 3.0), (30.0, 0.9, 5.0)):
         surface_degc, sensible_w, latent_w = wet_core(*case)
-        print(f"wet core {case}: {surface_degc:.3f} degC, {sensible_w:.1f} W sensible, {latent_w:.1f} W latent")
+        print(
+            f"wet core {case}: {surface_degc:.3f} degC, {sensible_w:.1f} W sensible, {latent_w:.1f} W latent"
+        )
 
 
 if __name__ == "__main__":
