@@ -14,6 +14,7 @@ from hp_gym.cli.reproduce_command import reproduce
 from hp_gym.cli.run_command import run
 from hp_gym.cli.scenarios_command import scenarios
 from hp_gym.cli.speed_command import speed
+from hp_gym.cli.sweep_command import sweep
 from hp_gym.cli.train_command import train
 from hp_gym.cli.tune_command import tune
 from hp_gym.ctrl_c import hook
@@ -31,6 +32,7 @@ for command, kept in (
     (scenarios, ""),
     (reproduce, _AS_BEFORE),
     (calibrate, _AS_BEFORE),
+    (sweep, "runs so far are kept, and the same command goes on with them"),
     (tune, "trials so far are kept, and the same command goes on with them"),
     (train, "nothing was written"),
     (export, _AS_BEFORE),
