@@ -11,7 +11,7 @@ def suggestion(name: str, known: Iterable[str]) -> str:
 
 
 def unknown(what: str, name: str, known: Iterable[str]) -> str:
-    """Returns a message: that there is no such thing, and what is near or, where nothing is, what there is."""
+    """Returns a message: there is no such thing, and what is near or, where nothing is, what there is."""
     names = list(known)
     others = suggestion(name, names) or f"; there are {', '.join(names)}"
     return f"there is no {what} `{name}`{others}"

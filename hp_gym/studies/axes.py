@@ -151,24 +151,29 @@ class Base:
 
     def known_keys(self) -> list[str]:
         """Dotted keys of all values and sections in the files of the run."""
+        return list(self.values())
+
+    def values(self) -> dict[str, Any]:
+        """What the files of the run say, by dotted key, sections included; overrides are not looked at."""
         experiment = self.load({})
         files = {
             "scenario": self.scenario,
             "controller": experiment.controller,
             "vehicle": experiment.vehicle,
         }
-        keys: dict[str, None] = {}
+        found: dict[str, Any] = {}
         for kind, name in files.items():
             for _, table in toml_files.chain(kind, name):
-                keys |= dict.fromkeys(_keys(table, kind))
-        return list(keys)
+                # What a file says stands before what its base does.
+                found = dict(_entries(table, kind)) | found
+        return found
 
 
-def _keys(table: Mapping[str, Any], prefix: str) -> Iterator[str]:
+def _entries(table: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Any]]:
     for name, value in table.items():
-        yield f"{prefix}.{name}"
+        yield f"{prefix}.{name}", value
         if isinstance(value, Mapping):
-            yield from _keys(value, f"{prefix}.{name}")
+            yield from _entries(value, f"{prefix}.{name}")
 
 
 def axes_of(described: Mapping[str, Any], base: Base) -> tuple[Axis, ...]:

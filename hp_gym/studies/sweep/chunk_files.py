@@ -1,7 +1,7 @@
 """The folder of a sweep: its definition, chunks of runs as they come, and one table at the end.
 
-Each file is written beside its place and renamed, so that a process that is killed leaves whole files only, and
-the next one drives what is missing.
+Each file is written beside its place and renamed: a process that is killed leaves whole files only, and the
+next one drives what is missing.
 """
 
 import json
@@ -151,9 +151,7 @@ def _filled(table: pa.Table, schema: pa.Schema) -> pa.Table:
 
 def to_table(plan: Plan, runs: Sequence[int], totals: Totals) -> pa.Table:
     """Makes the table of a chunk: number, values of the axes, why it ended, totals, each with its unit."""
-    columns: dict[str, Any] = {RUN: np.asarray(runs, dtype=np.int64)}
-    for name, values in plan.labels(runs).items():
-        columns[name] = values
+    columns: dict[str, Any] = {RUN: np.asarray(runs, dtype=np.int64), **plan.labels(runs)}
     columns[END] = list(totals.ends)
     units = {axis.name: axis.unit for axis in plan.axes}
     columns |= {name: totals.values[:, place] for place, name in enumerate(totals.names)}

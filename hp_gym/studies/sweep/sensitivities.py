@@ -26,8 +26,8 @@ LEAST_RUNS = 130
 def sensitivities(swept: Sweep, kpi: str) -> pd.DataFrame:
     """Returns Sobol's indices of a total, one row an axis.
 
-    Of a `saltelli` sample first-order and total indices; of the others first-order ones (RBD-FAST). `_conf` are
-    95 % half-widths.
+    Of a `saltelli` sample first-order and total indices; of the others first-order ones (RBD-FAST). What ends
+    with `_conf` is the half-width of a 95 % interval.
 
     Args:
         swept: A complete sweep over a sample.

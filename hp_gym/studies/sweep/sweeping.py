@@ -60,7 +60,8 @@ def sweep(
         overrides: Changes for all runs.
         substeps: Steps of the plant in each second.
         sample: `latin-hypercube`, `sobol` or `saltelli`; all combinations by default.
-        count: Points of the sample; a power of 2 for the last two. `saltelli` drives `axes + 2` times as many.
+        count: Points of the sample; a power of 2 for the last two. Of `saltelli` those of
+            its base sample.
         seed: Seed of the sample.
         out: Folder for the results; by default one that lives as long as what is returned.
         on: `threads` of this machine, or `ray`.
