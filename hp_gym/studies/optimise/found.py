@@ -113,7 +113,7 @@ class Found:
         return "\n".join(lines) + "\n"
 
     def write(self) -> list[Path]:
-        """Writes a file of overrides for the best trial, and for each of the front where there are several goals.
+        """Writes a file of overrides for the best trial, and where there are several goals each of the front.
 
         Raises:
             OptimiseError: No trial keeps all constraints.

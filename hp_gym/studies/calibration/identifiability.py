@@ -1,0 +1,109 @@
+"""What the data say about each parameter, and which of them they cannot tell apart."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hp_gym.studies.calibration.fit import Fit
+from hp_gym.studies.calibration.residuals import Residuals
+
+OPEN_SHARE: Final = 0.25
+"""Share of the ranges: what data alone leave open by more than that, they do not determine."""
+
+TAKES_PART: Final = 0.3
+"""Least component in such a combination (a vector of length 1) of a parameter that belongs to it."""
+
+_STEP: Final = 2e-3
+"""Step of central differences, as a share of the range."""
+
+_SMALLEST: Final = 1e-9
+
+
+@dataclass(frozen=True)
+class Knowledge:
+    """What a fit knows of its parameters; all in positions in the ranges (0 to 1) unless said otherwise.
+
+    Attributes:
+        names: First keys of the parameters.
+        covariance: From data and priors.
+        deviations: Standard deviations from data and priors, in the parameters' units.
+        data_shares: Standard deviations from data alone if all other parameters were known.
+        gain: Share of the prior's variance that the data have removed, 0 to 1, by parameter.
+        open_groups: Parameters that the data cannot tell apart, the most open first; the data do not see one alone.
+        reduced_chi2: Mean square of the data's residuals; 1 where model and stated uncertainties are right.
+    """
+
+    names: tuple[str, ...]
+    covariance: NDArray[np.float64]
+    deviations: tuple[float, ...]
+    data_shares: tuple[float, ...]
+    gain: tuple[float, ...]
+    open_groups: tuple[tuple[str, ...], ...]
+    reduced_chi2: float
+
+    @property
+    def correlation(self) -> NDArray[np.float64]:
+        """Correlations of the parameters."""
+        scale = np.sqrt(np.diag(self.covariance))
+        correlation: NDArray[np.float64] = self.covariance / np.outer(scale, scale)
+        return correlation
+
+
+def knowledge(fit: Fit) -> Knowledge:
+    """Works out what a fit knows, from differences around it."""
+    residuals = Residuals(fit.problem)
+    parameters = fit.problem.parameters
+    middle = np.array([p.to_share(value) for p, value in zip(parameters, fit.values, strict=True)])
+    data = len(residuals(middle)) - len(parameters)
+    columns = []
+    for place in range(len(parameters)):
+        ahead, behind = middle.copy(), middle.copy()
+        ahead[place], behind[place] = min(middle[place] + _STEP, 1.0), max(middle[place] - _STEP, 0.0)
+        rise = residuals(ahead)[:data] - residuals(behind)[:data]
+        columns.append(rise / (ahead[place] - behind[place]))
+    jacobian = np.stack(columns, axis=1)
+    chi2 = float(np.sum(residuals(middle)[:data] ** 2))
+    reduced = chi2 / max(data - len(parameters), 1)
+    # Residuals that are larger than their uncertainties allow say that the model is wrong somewhere.
+    information = jacobian.T @ jacobian / max(reduced, 1.0)
+    prior = residuals.prior_scale**2
+    covariance = np.linalg.inv(information + np.diag(np.maximum(prior, _SMALLEST)))
+    shares = np.sqrt(np.diag(covariance))
+    names = tuple(parameter.name for parameter in parameters)
+    return Knowledge(
+        names=names,
+        covariance=covariance,
+        deviations=tuple(
+            _in_units(p, at, share) for p, at, share in zip(parameters, middle, shares, strict=True)
+        ),
+        data_shares=tuple(float(1.0 / np.sqrt(max(each, _SMALLEST**2))) for each in np.diag(information)),
+        gain=tuple(float(max(1.0 - p * c, 0.0)) for p, c in zip(prior, np.diag(covariance), strict=True)),
+        open_groups=_open_groups(names, information),
+        reduced_chi2=reduced,
+    )
+
+
+def _in_units(parameter: object, at: float, share: float) -> float:
+    from hp_gym.studies.calibration.calibration_file import Parameter
+
+    if not isinstance(parameter, Parameter):
+        message = "no parameter"
+        raise TypeError(message)
+    step = 1e-4
+    low, high = max(at - step, 0.0), min(at + step, 1.0)
+    slope = (parameter.from_share(high) - parameter.from_share(low)) / (high - low)
+    return float(share * slope)
+
+
+def _open_groups(names: Sequence[str], information: NDArray[np.float64]) -> tuple[tuple[str, ...], ...]:
+    """Directions in which the data leave the values open, as the parameters that take part in each."""
+    eigenvalues, vectors = np.linalg.eigh(information)
+    groups: dict[tuple[str, ...], None] = {}
+    for value, vector in zip(eigenvalues, vectors.T, strict=True):
+        if value < OPEN_SHARE**-2:
+            parts = np.argsort(-np.abs(vector))
+            groups[tuple(names[part] for part in parts if abs(vector[part]) >= TAKES_PART)] = None
+    return tuple(groups)
