@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hp_gym import _core
+from hp_gym.build_identity import build
 from hp_gym.near_names import unknown
 from hp_gym.overrides import Value
 from hp_gym.studies.axes import AxisError, Base
@@ -41,6 +42,16 @@ def drive(runs: Sequence[Planned], threads: int, substeps: int = 1) -> Totals:
     """Drives runs side by side on native threads, each bit for bit as `simulate` does."""
     names, values, ends, refusals = _core.summaries(runs, threads, substeps)
     return Totals(tuple(names), values, tuple(end or REFUSED for end in ends), tuple(refusals))
+
+
+def drive_on_same(runs: Sequence[Planned], substeps: int, wanted: str) -> tuple[str, Totals | None]:
+    """Drives runs on one thread if this process has the build that is wanted: another gives other bits.
+
+    Returns:
+        The build of this process, and the totals; None where it is another one.
+    """
+    found = build()
+    return found, drive(runs, 1, substeps) if found == wanted else None
 
 
 def processors() -> int:

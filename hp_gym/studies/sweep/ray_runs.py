@@ -6,8 +6,7 @@ from typing import Any, Final
 
 from hp_gym import extras
 from hp_gym.build_identity import build
-from hp_gym.studies import planned_runs
-from hp_gym.studies.planned_runs import Planned, Totals
+from hp_gym.studies.planned_runs import Planned, Totals, drive_on_same
 from hp_gym.studies.sweep.sweep_plan import SweepError
 
 with extras.needed("ray"):
@@ -15,14 +14,6 @@ with extras.needed("ray"):
 
 _WAITING: Final = 4
 """Chunks under way for each processor of the cluster."""
-
-
-def _drive(runs: Sequence[Planned], substeps: int, wanted: str) -> tuple[str, Totals | None]:
-    """Drives a chunk on a worker; nothing where that has another build, as it would give other bits."""
-    found = build()
-    if found != wanted:
-        return found, None
-    return found, planned_runs.drive(runs, 1, substeps)
 
 
 class OnRay:
@@ -43,7 +34,7 @@ class OnRay:
         Raises:
             SweepError: A worker has another build, or the cluster is lost.
         """
-        remote = ray.remote(num_cpus=1, max_retries=-1)(_drive)
+        remote = ray.remote(num_cpus=1, max_retries=-1)(drive_on_same)
         waiting: dict[Any, int] = {}
         left = iter(chunks)
         resources: dict[str, float] = ray.cluster_resources()  # type: ignore[no-untyped-call]

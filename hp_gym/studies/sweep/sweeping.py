@@ -1,9 +1,10 @@
 """The sweep itself: chunk by chunk, resumed where it was stopped."""
 
 import os
+import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import mkdtemp
 from typing import Any, Final
 
 import pyarrow as pa
@@ -97,16 +98,16 @@ def sweep(
     if kpis:
         planned_runs.require_kpis(kpis, base, plan.changes(plan.point(0)))
     driver = _driver(on, threads or planned_runs.processors(), substeps)
-    temporary = None if out is not None else TemporaryDirectory(prefix="hp-gym-sweep-")
-    path = Path(temporary.name if temporary is not None else os.fspath(out or ""))
-    folder = Folder(path)
-    with locks.lock(path):
-        definition = plan.definition()
-        folder.begin(definition)
-        if not folder.complete:
-            _drive(plan, folder, driver, chunk_runs, watch)
-            folder.finish(definition)
-    return Sweep(path, temporary)
+    if out is not None:
+        _carry_out(plan, Path(out), driver, chunk_runs, watch)
+        return Sweep(out)
+    path = Path(mkdtemp(prefix="hp-gym-sweep-"))
+    try:
+        _carry_out(plan, path, driver, chunk_runs, watch)
+    except BaseException:
+        shutil.rmtree(path, ignore_errors=True)
+        raise
+    return Sweep(path, temporary=True)
 
 
 Driver = Callable[[Iterable[tuple[int, Sequence[Planned]]]], Iterator[tuple[int, Totals]]]
@@ -124,6 +125,16 @@ def _driver(on: str, threads: int, substeps: int) -> Driver:
             yield number, planned_runs.drive(runs, threads, substeps)
 
     return drive
+
+
+def _carry_out(plan: Plan, path: Path, driver: Driver, chunk_runs: int, watch: Watch | None) -> None:
+    folder = Folder(path)
+    with locks.lock(path):
+        definition = plan.definition()
+        folder.begin(definition)
+        if not folder.complete:
+            _drive(plan, folder, driver, chunk_runs, watch)
+            folder.finish(definition)
 
 
 def _drive(plan: Plan, folder: Folder, driver: Driver, chunk_runs: int, watch: Watch | None) -> None:

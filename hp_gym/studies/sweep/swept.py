@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+import weakref
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -17,7 +19,6 @@ from hp_gym.studies.sweep.sweep_plan import SweepError
 if TYPE_CHECKING:
     import os
     from collections.abc import Sequence
-    from tempfile import TemporaryDirectory
 
     import pandas as pd
     import xarray as xr
@@ -34,15 +35,16 @@ class Sweep:
 
     Args:
         path: Folder of the sweep.
-        kept: What removes the folder when nobody needs it any more.
+        temporary: Whether the folder goes when this object does.
 
     Raises:
         SweepError: There is no sweep in the folder.
     """
 
-    def __init__(self, path: str | os.PathLike[str], kept: TemporaryDirectory[str] | None = None) -> None:
+    def __init__(self, path: str | os.PathLike[str], *, temporary: bool = False) -> None:
         self.path = Path(path)
-        self._kept = kept
+        if temporary:
+            weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
         self._folder = Folder(self.path)
         definition = self._folder.read_definition()
         if definition is None:
