@@ -111,7 +111,8 @@ def _show(found: "Found", wall_s: float) -> None:
     )
     several = len(found.goals) > 1
     kept = f"{len(found.allowed)} keep the constraints" + (f", {len(front)} on the front" if several else "")
-    console.print(f"[bold]{len(found.trials)} trials[/], {kept}; {wall_s:.1f} s")
+    refused = f", {len(found.refusals)} more were refused" if found.refusals else ""
+    console.print(f"[bold]{len(found.trials)} trials[/], {kept}{refused}; {wall_s:.1f} s")
     table = Table(box=None, header_style="bold", pad_edge=False)
     table.add_column("trial", justify="right")
     for name in [

@@ -250,24 +250,29 @@ def _resolved(key: str, known: Sequence[str]) -> str:
 
 
 def require_accepted(axes: Sequence[Axis], base: Base) -> None:
-    """Checks that the plant accepts every value of each axis, the others at their first ones.
+    """Checks that the plant accepts every value of each axis, the others at their first or at their last.
 
     Raises:
         AxisError: It does not; the message names axis and value.
     """
     first: dict[str, Value] = {}
+    last: dict[str, Value] = {}
     for axis in axes:
         first |= axis.changes(axis.probes()[0])
+        last |= axis.changes(axis.probes()[-1])
     for axis in axes:
         for value in axis.probes():
             try:
                 base.load(first | axis.changes(value))
             except _core.ConfigurationError as error:
-                others = {key: value for key, value in first.items() if key not in axis.keys}
-                if axis is not axes[0] and not _loads(base, others):
+                if _loads(base, last | axis.changes(value)):
+                    continue
+                # Not this axis but the others, which have their turn.
+                if not _loads(base, axis.changes(value)) or len(axes) == 1:
+                    hint = suggestion(axis.keys[0], base.known_keys()) if _is_unknown(axis, base) else ""
+                    raise AxisError(f"axis `{axis.name}` at {axis.label(value)}: {error}{hint}") from error
+                if axis is axes[-1]:
                     raise AxisError(f"axes {', '.join(a.name for a in axes)}: {error}") from error
-                hint = suggestion(axis.keys[0], base.known_keys()) if _is_unknown(axis, base) else ""
-                raise AxisError(f"axis `{axis.name}` at {axis.label(value)}: {error}{hint}") from error
 
 
 def _loads(base: Base, changes: Mapping[str, Value]) -> bool:

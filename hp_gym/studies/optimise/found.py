@@ -13,7 +13,7 @@ from hp_gym.key_units import unit_of
 from hp_gym.overrides import Value, assignments
 from hp_gym.studies.axes import SELECTORS
 from hp_gym.studies.optimise import trial_store
-from hp_gym.studies.optimise.trial_store import DEFINITION, OptimiseError, excesses
+from hp_gym.studies.optimise.trial_store import DEFINITION, REFUSED, OptimiseError, excesses
 
 if TYPE_CHECKING:
     import os
@@ -39,8 +39,13 @@ class Found:
         study = trial_store.load(self.path)
         self.definition: dict[str, Any] = study.user_attrs.get(DEFINITION, {})
         self.trials: list[FrozenTrial] = study.get_trials(states=(TrialState.COMPLETE,))
+        failed = study.get_trials(deepcopy=False, states=(TrialState.FAIL,))
+        self.refusals: list[str] = [
+            trial.user_attrs[REFUSED] for trial in failed if REFUSED in trial.user_attrs
+        ]
         if not self.trials or not self.definition:
-            raise OptimiseError(f"{self.path}: no trial is complete")
+            why = f", {len(self.refusals)} were refused: {self.refusals[0]}" if self.refusals else ""
+            raise OptimiseError(f"{self.path}: no trial is complete{why}")
 
     @property
     def goals(self) -> list[str]:

@@ -16,7 +16,7 @@ from hp_gym.build_identity import build
 from hp_gym.json_text import plain
 from hp_gym.overrides import Overrides, Value, assignments
 from hp_gym.studies import planned_runs
-from hp_gym.studies.axes import Axis, AxisError, Base, Between, axes_of, require_accepted
+from hp_gym.studies.axes import Axis, Base, Between, axes_of, require_accepted
 from hp_gym.studies.optimise import goals, trial_store
 from hp_gym.studies.optimise.found import Found
 from hp_gym.studies.optimise.goals import Goal, Limit
@@ -210,14 +210,13 @@ def _search(study: optuna.Study, task: Task, trials: int, threads: int) -> None:
         TextColumn("searching"),
         BarColumn(),
         MofNCompleteColumn(),
-        TextColumn("{task.fields[best]}"),
         TimeRemainingColumn(),
     )
     shown = progress_console.is_terminal
     with Progress(*columns, console=progress_console, transient=True, disable=not shown) as progress:
-        bar = progress.add_task("trials", total=trials, best="")
+        bar = progress.add_task("trials", total=trials)
         while True:
-            done = len(study.get_trials(deepcopy=False, states=(TrialState.COMPLETE,)))
+            done = len(study.get_trials(deepcopy=False, states=(TrialState.COMPLETE, TrialState.FAIL)))
             progress.update(bar, completed=done)
             if done >= trials:
                 return
@@ -232,9 +231,10 @@ def _drive(study: optuna.Study, task: Task, batch: Sequence[optuna.Trial], threa
         rows = range(place * len(task.bases), (place + 1) * len(task.bases))
         refusal = next((totals.refusals[row] for row in rows if totals.ends[row] == REFUSED), None)
         if refusal is not None:
+            # Values that are right one by one need not be so together: others are tried.
+            trial.set_user_attr(trial_store.REFUSED, refusal)
             study.tell(trial, state=TrialState.FAIL)
-            point = ", ".join(f"{name} {value}" for name, value in trial.params.items())
-            raise AxisError(f"trial {trial.number} ({point}): {refusal}; trials so far are kept")
+            continue
         values, beyond = _outcome(task, totals, rows)
         trial_store.note_excesses(trial, beyond)
         study.tell(trial, values)

@@ -19,6 +19,9 @@ DEFINITION: Final = "definition"
 EXCESSES: Final = "excesses"
 """Attribute of a trial: by how much each constraint is broken."""
 
+REFUSED: Final = "refused"
+"""Attribute of a trial: why the plant does not accept its values."""
+
 _NAME: Final = "hp-gym optimise"
 _PROCESSES: Final = "processes"
 _PATIENCE_S: Final = 30.0

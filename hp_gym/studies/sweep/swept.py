@@ -109,6 +109,8 @@ class Sweep:
                 for name in present
             }
             parts.append(table.select(present).to_pandas())
+        if not parts:
+            raise SweepError(f"{self.path}: no run is driven yet")
         frame: pd.DataFrame = pd.concat(parts, ignore_index=True)[wanted]
         frame.attrs["units"] = units
         return frame
