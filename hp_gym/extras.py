@@ -21,7 +21,7 @@ EXTRAS: Final[Mapping[str, tuple[str, ...]]] = {
     "plot": ("matplotlib", "PIL"),
     "ray": ("pandas", "pyarrow", "ray"),
     "speed": ("fastsim",),
-    "studies": ("matplotlib", "optuna", "PIL", "pydantic", "scipy", "tomlkit"),
+    "studies": ("matplotlib", "optuna", "PIL", "pydantic", "scipy", "sqlalchemy", "tomlkit"),
     "sweep": ("matplotlib", "pandas", "PIL", "pyarrow", "SALib", "scipy", "xarray"),
     "train": (
         "pydantic", "safetensors", "sb3_contrib", "stable_baselines3", "tensorboard", "tomlkit", "torch"

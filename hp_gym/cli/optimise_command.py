@@ -89,7 +89,7 @@ def optimise(
                 "definition": found.definition,
                 "trials": len(found.trials),
                 "allowed": len(found.allowed),
-                "front": found.to_pandas(front=True).to_dict("records"),
+                "front": found.rows(front=True),
             }
         )
         return
@@ -120,12 +120,11 @@ def _show(found: "Found", wall_s: float) -> None:
         *(axis["name"] for axis in found.definition["axes"]),
     ]:
         table.add_column(name.replace("_", " "), justify="right", overflow="fold")
-    frame = found.to_pandas().set_index("trial")
     # What the files say was tried first, where it is within the ranges.
     present = [trial for trial in found.trials if trial.number == 0 and "fixed_params" in trial.system_attrs]
     for word, trial in [*(("files", trial) for trial in present), *(("", trial) for trial in shown)]:
         goals = [" ".join(quantity(kpi, value)) for kpi, value in zip(found.goals, trial.values, strict=True)]
-        values = (frame.loc[trial.number, axis["name"]] for axis in found.definition["axes"])
+        values = (found.value(trial, axis) for axis in found.definition["axes"])
         texts = [f"{value:.4g}" if isinstance(value, float) else str(value) for value in values]
         table.add_row(word or str(trial.number), *goals, *texts)
     console.print(table)

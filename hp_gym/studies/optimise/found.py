@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from optuna.trial import FrozenTrial, TrialState
 
-from hp_gym import notebooks
+from hp_gym import extras, notebooks
 from hp_gym.files import atomic_write
 from hp_gym.key_units import unit_of
 from hp_gym.overrides import Value, assignments
@@ -17,6 +17,7 @@ from hp_gym.studies.optimise.trial_store import DEFINITION, REFUSED, OptimiseErr
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Mapping
 
     import pandas as pd
     from matplotlib.figure import Figure
@@ -97,9 +98,7 @@ class Found:
         """Overrides, and choices of scenario, controller or vehicle, of a trial."""
         changes: dict[str, Value] = {}
         for axis in self.definition["axes"]:
-            value = trial.params[axis["name"]]
-            if isinstance(axis["values"], dict):
-                value = axis["values"]["choices"][value]
+            value = self.value(trial, axis)
             if isinstance(value, dict):
                 changes |= {f"{key}.{name}": inner for key in axis["keys"] for name, inner in value.items()}
             else:
@@ -133,33 +132,46 @@ class Found:
                 temporary.write_text(self.to_toml(trial), encoding="utf-8")
         return list(files)
 
+    def value(self, trial: FrozenTrial, axis: Mapping[str, Any]) -> Value:
+        """The value of an axis of the definition in a trial."""
+        drawn: Value = trial.params[axis["name"]]
+        if isinstance(axis["values"], dict):
+            chosen: Value = axis["values"]["choices"][drawn]
+            return chosen
+        return drawn
+
+    def rows(self, *, front: bool = False) -> list[dict[str, Any]]:
+        """Returns number, values, goals, whether it is allowed, and whether it is on the front, of each trial.
+
+        Args:
+            front: Only those of the front.
+        """
+        found = self.front
+        on_front = {trial.number for trial in found}
+        return [
+            {
+                "trial": trial.number,
+                **{axis["name"]: self.value(trial, axis) for axis in self.definition["axes"]},
+                **dict(zip(self.goals, trial.values, strict=True)),
+                "allowed": all(excess <= 0.0 for excess in excesses(trial)),
+                "on_front": trial.number in on_front,
+            }
+            for trial in (found if front else self.trials)
+        ]
+
     def to_pandas(self, *, front: bool = False) -> pd.DataFrame:
         """Returns a table, one row a trial, with units in `attrs["units"]`.
 
         Args:
             front: Only those of the front.
-        """
-        import pandas as pd
 
-        on_front = {trial.number for trial in self.front}
-        rows = []
-        for trial in self.front if front else self.trials:
-            choices = {
-                axis["name"]: axis["values"]["choices"][trial.params[axis["name"]]]
-                if isinstance(axis["values"], dict)
-                else trial.params[axis["name"]]
-                for axis in self.definition["axes"]
-            }
-            rows.append(
-                {
-                    "trial": trial.number,
-                    **choices,
-                    **dict(zip(self.goals, trial.values, strict=True)),
-                    "allowed": all(excess <= 0.0 for excess in excesses(trial)),
-                    "on_front": trial.number in on_front,
-                }
-            )
-        frame = pd.DataFrame(rows)
+        Raises:
+            MissingExtraError: pandas is not installed.
+        """
+        with extras.needed("benchmark"):
+            import pandas as pd
+
+        frame = pd.DataFrame(self.rows(front=front))
         units = {axis["name"]: axis["unit"] for axis in self.definition["axes"]}
         frame.attrs["units"] = {name: units.get(name) or unit_of(name) for name in frame.columns}
         return frame
@@ -174,11 +186,14 @@ class Found:
         """What a notebook shows: the best trial and the picture."""
         best = self.best
         cells = [
-            (axis["name"], f"{best.params[axis['name']]:.6g}", axis["unit"])
-            for axis in self.definition["axes"]
+            (axis["name"], _shown(self.value(best, axis)), axis["unit"]) for axis in self.definition["axes"]
         ]
         cells += [
             (kpi, f"{value:.6g}", unit_of(kpi)) for kpi, value in zip(self.goals, best.values, strict=True)
         ]
         title = f"Trial {best.number}, the best of {len(self.trials)}; {len(self.front)} on the front"
         return notebooks.table(title, cells) + notebooks.picture(self.plot)
+
+
+def _shown(value: Value) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
