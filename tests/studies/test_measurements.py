@@ -1,5 +1,6 @@
 """Calibration on measured traces: what it finds, how sure it is, and which files it refuses."""
 
+import json
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -89,6 +90,8 @@ def test_traces_and_totals_find_the_truth_within_the_stated_deviations(tmp_path:
     assert {one.measurement for one in result.judged} == {"one"}
     overrides = tmp_path / "out" / "calibrated.toml"
     assert tomllib.loads(overrides.read_text(encoding="utf-8")) == found
+    told = json.loads((tmp_path / "out" / "knowledge.json").read_text(encoding="utf-8"))
+    assert np.linalg.eigvalsh(told["covariance_of_shares"]).min() > 0.0
     by_overrides = hp_gym.simulate(CASE, overrides=overrides).summary["energy_kwh"]
     by_vehicle = hp_gym.simulate(CASE, vehicle=tmp_path / "out" / "vehicle.toml").summary["energy_kwh"]
     assert by_overrides == by_vehicle

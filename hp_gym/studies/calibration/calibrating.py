@@ -13,7 +13,8 @@ import numpy as np
 import tomlkit
 
 from hp_gym import notebooks
-from hp_gym.studies.calibration import calibrated_files, calibration_report, held_out
+from hp_gym.json_text import dumps
+from hp_gym.studies.calibration import calibrated_files, calibration_report, held_out, measured_report
 from hp_gym.studies.calibration.fit import Fit, Options, Progress, fit
 from hp_gym.studies.calibration.identifiability import Knowledge, knowledge
 from hp_gym.studies.calibration.measurements import Driven, Measurement
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from hp_gym.studies.calibration.calibration_report import HeldOut
 
 OVERRIDES: Final = "calibrated.toml"
+KNOWLEDGE: Final = "knowledge.json"
+"""Covariance, agreement with each measurement, and what the data cannot tell."""
 
 Bars = Callable[[str, int], AbstractContextManager[Progress | None]]
 """Shows how far a fit is, by its name and how many evaluations there can be."""
@@ -78,6 +81,8 @@ class Calibrated:
             OSError: A file cannot be written.
         """
         (folder / OVERRIDES).write_text(calibration_report.to_toml(self.fit), encoding="utf-8")
+        if self.knowledge is not None:
+            (folder / KNOWLEDGE).write_text(dumps(measured_report.to_json(self)), encoding="utf-8")
         problem = self.fit.problem
         for kind, base in (("vehicle", problem.vehicle), ("controller", problem.controller)):
             text = _based(kind, base, self.fit.by_key())

@@ -141,7 +141,7 @@ class Found:
         return drawn
 
     def rows(self, *, front: bool = False) -> list[dict[str, Any]]:
-        """Returns number, values, goals, whether it is allowed, and whether it is on the front, of each trial.
+        """Returns number, values and goals of each trial, whether it is allowed, and on the front.
 
         Args:
             front: Only those of the front.
