@@ -4,12 +4,20 @@ from hp_gym import (  # isort: skip
     ctrl_c,  # noqa: F401, first: Ctrl-C may come while the rest is loaded
     processor,  # noqa: F401, second: it refuses to load an extension that cannot run here
 )
+from typing import TYPE_CHECKING, Any
+
+from hp_gym import later
 from hp_gym._core import ConfigurationError, Experiment, InternalError, Run, StateError, __version__, names
 from hp_gym.command import encode
 from hp_gym.registration import register_envs
 from hp_gym.signals import observe
 from hp_gym.simulation import Controller, simulate
 from hp_gym.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from hp_gym.studies.calibration.calibrating import calibrate
+    from hp_gym.studies.optimise.optimising import optimise
+    from hp_gym.studies.sweep.sweeping import sweep
 
 __all__ = [
     "ConfigurationError",
@@ -20,11 +28,23 @@ __all__ = [
     "StateError",
     "Trajectory",
     "__version__",
+    "calibrate",
     "encode",
     "names",
     "observe",
+    "optimise",
     "register_envs",
     "simulate",
+    "sweep",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Loads a function of the studies when it is asked for."""
+    if name in later.FUNCTIONS:
+        return later.function(later.FUNCTIONS[name], name)
+    message = f"module {__name__!r} has no attribute {name!r}"
+    raise AttributeError(message)
+
 
 register_envs()

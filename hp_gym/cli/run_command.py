@@ -64,6 +64,9 @@ def run(
             "A key begins with scenario., vehicle. or controller.; may be repeated.",
         ),
     ] = None,
+    overrides: Annotated[
+        Path | None, typer.Option(help="A .toml file of changes, as `calibrate` and `optimise` write.")
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Write all signals, second by second, to this .csv or .parquet file.")
     ] = None,
@@ -72,8 +75,10 @@ def run(
 ) -> None:
     """Runs a scenario and shows its totals."""
     from hp_gym import simulate
+    from hp_gym.overrides import assignments
 
     try:
+        changes = [*assignments(overrides), *(changes or [])]
         trajectory = simulate(scenario, controller, changes, vehicle=vehicle)
         if out is not None:
             trajectory.save(out)
@@ -87,7 +92,7 @@ def run(
                 "scenario": trajectory.scenario,
                 "controller": trajectory.controller,
                 "vehicle": vehicle,
-                "overrides": changes or [],
+                "overrides": changes,
                 "end_reason": trajectory.end_reason,
                 "limits": trajectory.limits,
                 "summary": trajectory.summary,
