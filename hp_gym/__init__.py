@@ -15,9 +15,9 @@ from hp_gym.simulation import Controller, simulate
 from hp_gym.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from hp_gym.studies.calibration.calibrating import calibrate
-    from hp_gym.studies.optimise.optimising import optimise
-    from hp_gym.studies.sweep.sweeping import sweep
+    from hp_gym.studies.calibration.calibrating import calibrate as calibrate
+    from hp_gym.studies.optimise.optimising import optimise as optimise
+    from hp_gym.studies.sweep.sweeping import sweep as sweep
 
 __all__ = [
     "ConfigurationError",
@@ -28,14 +28,11 @@ __all__ = [
     "StateError",
     "Trajectory",
     "__version__",
-    "calibrate",
     "encode",
     "names",
     "observe",
-    "optimise",
     "register_envs",
     "simulate",
-    "sweep",
 ]
 
 
@@ -45,6 +42,11 @@ def __getattr__(name: str) -> Any:
         return later.function(later.FUNCTIONS[name], name)
     message = f"module {__name__!r} has no attribute {name!r}"
     raise AttributeError(message)
+
+
+def __dir__() -> list[str]:
+    """Names for completion; `from hp_gym import *` takes only those that need no extra."""
+    return sorted({*globals(), *later.FUNCTIONS})
 
 
 register_envs()

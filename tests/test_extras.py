@@ -97,6 +97,7 @@ def test_the_bare_package_makes_environments(tmp_path: Path) -> None:
         "import gymnasium as gym, hp_gym; from hp_gym.envs.hpcu_policy import HpcuPolicy\n"
         "env = gym.make('EVHeatPump-v0'); observation, _ = env.reset(seed=0)\n"
         "env.step(HpcuPolicy(env)(observation))\n"
+        "from hp_gym import *; assert 'sweep' in dir(hp_gym)\n"
         "envs = gym.make_vec('EVHeatPump-v0', num_envs=3); envs.reset(seed=0)\n"
         "envs.step(envs.action_space.sample())"
     )

@@ -100,6 +100,16 @@ def test_traces_and_totals_find_the_truth_within_the_stated_deviations(tmp_path:
     assert "drag_area_m2" in result._repr_html_()
 
 
+def test_a_file_of_overrides_may_have_sections(tmp_path: Path) -> None:
+    flat, nested = tmp_path / "flat.toml", tmp_path / "nested.toml"
+    flat.write_text(f'"{MASS}" = 1700.0\n"controller.htc_set_point_degc" = 60.0\n')
+    nested.write_text("[vehicle.body]\nmass_kg = 1700.0\n[controller]\nhtc_set_point_degc = 60.0\n")
+    runs = [hp_gym.simulate(CASE, overrides=file) for file in (flat, str(nested))]
+    expected = hp_gym.simulate(CASE, overrides={MASS: 1700.0, "controller.htc_set_point_degc": 60.0})
+    for run in runs:
+        assert np.array_equal(run.values, expected.values, equal_nan=True)
+
+
 def test_what_only_a_product_shows_is_not_told_apart(tmp_path: Path) -> None:
     path = write(tmp_path, (DRAG, CELLS, HEAT))
     result = hp_gym.calibrate(path, held_back=True, options=Options(maximum_evaluations=30))

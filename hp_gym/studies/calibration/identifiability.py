@@ -38,7 +38,6 @@ class Knowledge:
         names: First keys of the parameters.
         covariance: From data and priors.
         deviations: Standard deviations from data and priors, in the parameters' units.
-        data_shares: Standard deviations from data alone if all other parameters were known.
         gain: Share of the prior's variance that the data have removed, 0 to 1, by parameter.
         open_groups: Parameters that the data cannot tell apart; one alone is not seen by the data.
         reduced_chi2: Mean square of the data's residuals; 1 where model and stated uncertainties are right.
@@ -47,7 +46,6 @@ class Knowledge:
     names: tuple[str, ...]
     covariance: NDArray[np.float64]
     deviations: tuple[float, ...]
-    data_shares: tuple[float, ...]
     gain: tuple[float, ...]
     open_groups: tuple[tuple[str, ...], ...]
     reduced_chi2: float
@@ -70,15 +68,14 @@ def knowledge(fit: Fit) -> Knowledge:
     chi2 = float(np.sum(residuals(middle)[:data] ** 2))
     reduced = chi2 / max(data - len(parameters), 1)
     # Residuals that are larger than their uncertainties allow say that the model is wrong somewhere.
-    information = jacobian.T @ jacobian / max(reduced, 1.0)
+    information: NDArray[np.float64] = jacobian.T @ jacobian / max(reduced, 1.0)
     eigenvalues, vectors = np.linalg.eigh(information)
     noise = np.array([float(vector**2 @ roughness) for vector in vectors.T]) / max(reduced, 1.0)
     is_open = eigenvalues < np.maximum(OPEN_SHARE**-2, noise)
-    # What is not more than roughness is not known.
-    sure = np.where(eigenvalues < noise, 0.0, np.maximum(eigenvalues, 0.0))
-    information = vectors @ np.diag(sure) @ vectors.T
+    information = _without(information, vectors[:, eigenvalues < noise])
     prior = residuals.prior_scale**2
-    covariance = np.linalg.inv(information + np.diag(np.maximum(prior, _SMALLEST)))
+    known = information + np.diag(np.maximum(prior, _SMALLEST))
+    covariance = np.linalg.inv(known).astype(np.float64)
     shares = np.sqrt(np.diag(covariance))
     names = tuple(parameter.name for parameter in parameters)
     return Knowledge(
@@ -87,7 +84,6 @@ def knowledge(fit: Fit) -> Knowledge:
         deviations=tuple(
             _in_units(p, at, share) for p, at, share in zip(parameters, middle, shares, strict=True)
         ),
-        data_shares=tuple(float(1.0 / np.sqrt(max(each, _SMALLEST**2))) for each in np.diag(information)),
         gain=tuple(float(max(1.0 - p * c, 0.0)) for p, c in zip(prior, np.diag(covariance), strict=True)),
         open_groups=_open_groups(names, vectors[:, is_open]),
         reduced_chi2=reduced,
@@ -111,6 +107,17 @@ def _differences(
     jacobian: NDArray[np.float64] = np.median(jacobians, axis=0)
     spread = _NORMAL * np.median(np.abs(jacobians - jacobian), axis=0)
     return jacobian, np.sum(spread**2, axis=0) / len(_STEPS)
+
+
+def _without(information: NDArray[np.float64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Takes out of the information what is not more than roughness, in parameters that take part in it."""
+    if not directions.size:
+        return information
+    # Roughness also turns a direction a little towards parameters that are well known.
+    plain, _ = np.linalg.qr(np.where(np.abs(directions) >= TAKES_PART, directions, 0.0))
+    rest = np.eye(len(information)) - plain @ plain.T
+    cleared: NDArray[np.float64] = rest @ information @ rest
+    return cleared
 
 
 def _in_units(parameter: Parameter, at: float, share: float) -> float:
