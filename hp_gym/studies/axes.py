@@ -20,8 +20,10 @@ ALIASES: Final = {
     "architecture": "vehicle.architecture",
     "climate": "scenario.climate",
     "cycle": "scenario.cycle",
+    # A scenario that does not give it starts at its ambient temperature, so its file may not have the key.
+    "soak_temperature_degc": "scenario.initial.soak_temperature_degc",
 }
-"""Short words for keys whose values are names, or sections of values."""
+"""Short words for keys whose values are names or sections of values, or that a file may leave out."""
 
 TOGETHER: Final = "+"
 """Between keys that share one value."""

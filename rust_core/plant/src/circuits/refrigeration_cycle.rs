@@ -1,7 +1,7 @@
 //! Equations of the quasi-steady vapour-compression cycle, for given saturation temperatures and speed.
 
 use super::refrigeration_loop::LoopBoundary;
-use super::vapour_injection::{Between, InjectionParameters, VapourInjection};
+use super::vapour_injection::{Between, Injected, InjectionParameters, VapourInjection};
 use crate::components::compressor::{CompressorParameters, soft_floor};
 use crate::components::refrigerant_exchanger::approach_limited_k;
 use crate::config::{Celsius, Violation};
@@ -187,32 +187,30 @@ impl RefrigerationCycle {
 
         let efficiency =
             parameters.compressor.efficiency(isobar.pressure_pa / suction.pressure_pa, speed_rev_s);
-        let (injected_share, evaporator_inlet_j_kg, work_j_kg, discharge_enthalpy_j_kg) =
+        let Injected { share: injected_share, evaporator_inlet_j_kg, work_j_kg, discharge_enthalpy_j_kg } =
             if let Some(injection) = &self.injection {
-                let injected = injection.compress(&Between {
-                    table: &self.table,
-                    evaporating_k,
-                    suction: &suction,
-                    isobar: &isobar,
-                    subcooling_k: condensing_k.then(subcooling_k),
-                    liquid_enthalpy_j_kg,
-                    isentropic_efficiency: efficiency.isentropic,
-                });
-                // The losses heat all gas, the injected too.
-                let loss_j_kg =
-                    injected.work_j_kg * (self.gas_per_compression - 1.0) / (injected.share + 1.0);
-                (
-                    injected.share,
-                    injected.evaporator_inlet_j_kg,
-                    injected.work_j_kg,
-                    injected.discharge_enthalpy_j_kg + loss_j_kg,
+                self.injected(
+                    injection,
+                    &Between {
+                        table: &self.table,
+                        evaporating_k,
+                        suction: &suction,
+                        isobar: &isobar,
+                        subcooling_k: condensing_k.then(subcooling_k),
+                        liquid_enthalpy_j_kg,
+                        isentropic_efficiency: efficiency.isentropic,
+                    },
                 )
             } else {
                 let isentropic_j_kg =
                     isobar.enthalpy_at_entropy_j_kg(suction.entropy_j_kg_k) - suction.enthalpy_j_kg;
                 let work_j_kg = soft_floor(isentropic_j_kg, WORK_KNEE_J_KG) / efficiency.isentropic;
-                let discharge_j_kg = suction.enthalpy_j_kg + work_j_kg * self.gas_per_compression;
-                (T::constant(0.0), liquid_enthalpy_j_kg, work_j_kg, discharge_j_kg)
+                Injected {
+                    share: T::constant(0.0),
+                    evaporator_inlet_j_kg: liquid_enthalpy_j_kg,
+                    work_j_kg,
+                    discharge_enthalpy_j_kg: suction.enthalpy_j_kg + work_j_kg * self.gas_per_compression,
+                }
             };
         let mass_flow_kg_s =
             efficiency.volumetric * suction.density_kg_m3 * speed_rev_s * self.displacement_m3;
@@ -240,6 +238,16 @@ impl RefrigerationCycle {
             cold_residual_k: -(evaporating_k - sides.cold_inlet_k) - evaporator_w * sides.cold_resistance_k_w,
             hot_residual_k: condensing_k - sides.hot_inlet_k - condenser_w * sides.hot_resistance_k_w,
         }
+    }
+
+    /// Compression with injection; the losses heat all gas, the injected too.
+    #[inline]
+    fn injected<T: Real>(&self, injection: &VapourInjection, between: &Between<'_, T>) -> Injected<T> {
+        let mut injected = injection.compress(between);
+        let loss_j_kg = injected.work_j_kg * (self.gas_per_compression - 1.0);
+        injected.discharge_enthalpy_j_kg =
+            injected.discharge_enthalpy_j_kg + loss_j_kg / (injected.share + 1.0);
+        injected
     }
 
     /// All quantities of the cycle and both balances, without derivatives.

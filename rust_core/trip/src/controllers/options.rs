@@ -26,9 +26,6 @@ parameters! {
         cooling_blower_band_k: f64 = 0.0 .. 30.0,
         /// Blower level at the cabin target, which brings the fresh air that occupants need [-].
         least_blower_level: f64 = 0.0 .. 1.0,
-        /// Blower level of full need while cooling; 0: that of heating [-].
-        #[serde(default)]
-        cooling_blower_level: f64 = 0.0 .. 1.0,
         /// Recirculation by humidity: fog margin of the windscreen up to which there is fresh air only [K].
         #[serde(default)]
         fresh_below_fog_margin_k: f64 = 0.0 .. 20.0,
@@ -80,10 +77,6 @@ impl Options {
         let band_k = match mode {
             CabinMode::Heating => self.heating_blower_band_k,
             CabinMode::Cooling => self.cooling_blower_band_k,
-        };
-        let highest = match mode {
-            CabinMode::Cooling if self.cooling_blower_level > 0.0 => self.cooling_blower_level,
-            _ => highest,
         };
         if band_k == 0.0 {
             return highest;
@@ -149,7 +142,6 @@ mod tests {
             heating_blower_band_k: 4.0,
             cooling_blower_band_k: 2.0,
             least_blower_level: 0.3,
-            cooling_blower_level: 0.0,
             fresh_below_fog_margin_k: 1.0,
             recirculation_fog_band_k: 4.0,
             fresh_above_co2_ppm: 1200.0,
@@ -173,13 +165,6 @@ mod tests {
     fn air_is_blown_at_a_windscreen_that_is_about_to_fog_up() {
         let share = |margin_k| modern().windscreen_share(margin_k);
         assert_eq!((share(3.0), share(1.5), share(0.0), share(-2.0)), (0.0, 0.5, 1.0, 1.0));
-    }
-
-    #[test]
-    fn cooling_may_have_a_blower_level_of_its_own() {
-        let cooling = Options { cooling_blower_level: 0.9, ..modern() };
-        assert!((cooling.blower_level(CabinMode::Cooling, 0.6, 5.0) - 0.9).abs() < 1e-12);
-        assert_eq!(cooling.blower_level(CabinMode::Heating, 0.6, 20.0), 0.6);
     }
 
     #[test]

@@ -29,6 +29,8 @@ parameters! {
         chiller_flow_kg_s: f64 = 0.001 .. 5.0,
         /// Constant blower level [-].
         blower_level: f64 = 0.0 .. 1.0,
+        /// Blower level while cooling [-].
+        cooling_blower_level: f64 = 0.0 .. 1.0,
         /// Recirculated share while heating [-].
         heating_recirculation: f64 = 0.0 .. 0.95,
         /// Recirculated share while cooling [-].
@@ -115,7 +117,11 @@ impl RuleBased for Thermostat {
         let mode = memory.mode;
         self.presets.enter(mode, demand);
         let parameters = &self.parameters;
-        let level = parameters.options.blower_level(mode, parameters.blower_level, self.lack_k(state, mode));
+        let level = parameters.options.blower_level(
+            mode,
+            self.constant_settings().blower_level(mode),
+            self.lack_k(state, mode),
+        );
         self.roles.blow(level, demand);
         parameters.options.mind_air(&self.roles, state, demand);
         let cabin_k = state.temperatures_k[self.roles.cabin_air.index()];
