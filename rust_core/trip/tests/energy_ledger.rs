@@ -137,7 +137,7 @@ fn moments() -> Vec<Moment> {
     let starved = [
         "scenario.initial.soak_temperature_degc=-36.0",
         "scenario.climate.ambient_temperature_degc=-36.0",
-        "vehicle.battery.discharge_limit.maximum_rate_per_h=0.01",
+        "vehicle.battery.discharge_limit.rate_scale=0.002",
     ];
     let warm_store =
         ["scenario.initial.thermal_battery_temperature_degc=40", "scenario.strategy.transmission=true"];

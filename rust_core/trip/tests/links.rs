@@ -409,7 +409,7 @@ fn the_front_end_exchanger_passes_the_same_both_ways_and_its_fan_follows_the_req
                 }
                 let fan_m3_s = 0.6 * (used_w / 200.0).cbrt();
                 let air_kg_s = air.density_kg_m3 * (0.25 * (0.2 * speed_m_s).hypot(0.1)).hypot(fan_m3_s);
-                let ua_w_k = 900.0 * air_kg_s.powf(0.6);
+                let ua_w_k = plant.vehicle.front_ends[0].ua_w_k * air_kg_s.powf(0.6);
                 let place = plant.layout().circuit(circuit).expect("a loop");
                 let share = plant.vehicle.loops[place].circuit.branch_shares.of("ambient");
                 // Rejection has the whole flow, as closed branches hand theirs on.

@@ -180,9 +180,13 @@ mod tests {
              battery_from_supply_degc=80.0, battery_supply_band_k=5.0, heating_blower_band_k=10.0, \
              cooling_blower_band_k=5.0, least_blower_level=0.3}",
         );
-        let experiment =
-            Experiment::load("jeffs2019/case1-4", Some("thermostat"), &[change.expect("an assignment")])
-                .expect("built in");
+        let level = Override::parse("controller.blower_level=1.0").expect("an assignment");
+        let experiment = Experiment::load(
+            "jeffs2019/case1-4",
+            Some("thermostat"),
+            &[change.expect("an assignment"), level],
+        )
+        .expect("built in");
         let ranges = &experiment.plant.ranges;
         let row = |name: &str| ranges.row(name).expect("an actuator");
         for (cabin_degc, level) in [(5.0, 1.0), (17.0, 0.65), (22.0, 0.3)] {
