@@ -107,7 +107,9 @@ fn spread(rules: &str, ambient_degc: f64) -> (f64, Vec<Steady>) {
 fn steady_power_does_not_depend_on_how_warm_the_cabin_was() {
     for ambient_degc in [-7.0, 0.0, 5.0] {
         let (apart, all) = spread("hpcu-modern", ambient_degc);
-        assert!(apart < 0.02, "{ambient_degc} degC: {apart}, {all:?}");
+        // At 5 degC it is a heat pump of 240 W that switches its lowest speed on and off: 7 W.
+        let largest = if ambient_degc < 5.0 { 0.02 } else { 0.03 };
+        assert!(apart < largest, "{ambient_degc} degC: {apart}, {all:?}");
         // The heat pump alone holds the cabin there, so that there is nothing left for the PTC.
         for steady in all {
             assert!((steady.cabin_degc - 22.0).abs() < 0.1, "{ambient_degc} degC: {steady:?}");

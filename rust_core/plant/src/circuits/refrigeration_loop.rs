@@ -271,7 +271,9 @@ impl RefrigerationCycle {
         } else {
             self.at_rest(boundary, LoopStatus::Off, Limit::Power)
         };
-        let beyond_demand = !held_on && power_share < 1.0 && result.electric_power_w > demand_w;
+        // At its lowest speed only: elsewhere the solution is at the demand, and round-off is no reason to stop.
+        let lowest = result.status == LoopStatus::MinimumSpeed;
+        let beyond_demand = !held_on && lowest && result.electric_power_w > demand_w;
         if result.electric_power_w > allowed.available_w || beyond_demand {
             // Not even minimum speed can be fed, or it was not asked for: the minimum time on ends here.
             result = self.at_rest(boundary, LoopStatus::Off, Limit::Power);

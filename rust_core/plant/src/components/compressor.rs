@@ -62,6 +62,9 @@ parameters! {
 /// Pressure ratio minus one below which the efficiencies flatten; outside what the machine may do.
 const PRESSURE_RATIO_KNEE: f64 = 0.02;
 
+/// Share from which on a machine counts as settled, after seven time constants.
+const SETTLED_SHARE: f64 = 0.999;
+
 /// Time over which the loss of a start is drawn [s]; a step shorter than this takes its share.
 const START_DURATION_S: f64 = 1.0;
 
@@ -172,7 +175,8 @@ impl CompressorState {
     #[must_use]
     #[inline]
     pub fn power_share(&self, parameters: &CompressorParameters, step_s: f64) -> f64 {
-        approached(self.settled_share, 1.0, step_s, parameters.settling_time_s)
+        let share = approached(self.settled_share, 1.0, step_s, parameters.settling_time_s);
+        if share < SETTLED_SHARE { share } else { 1.0 }
     }
 
     /// Highest speed at the end of a step of `step_s` [rev/s].
