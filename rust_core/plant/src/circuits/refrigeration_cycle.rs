@@ -5,7 +5,7 @@ use super::vapour_injection::{Between, Injected, InjectionParameters, VapourInje
 use crate::components::compressor::{CompressorParameters, soft_floor};
 use crate::components::refrigerant_exchanger::approach_limited_k;
 use crate::config::{Celsius, Violation};
-use crate::media::refrigerant::{CondensingIsobar, RefrigerantTable};
+use crate::media::refrigerant::{CondensingIsobar, RefrigerantTable, SuctionState};
 use crate::numerics::dual::Real;
 use crate::parameters;
 
@@ -202,15 +202,7 @@ impl RefrigerationCycle {
                     },
                 )
             } else {
-                let isentropic_j_kg =
-                    isobar.enthalpy_at_entropy_j_kg(suction.entropy_j_kg_k) - suction.enthalpy_j_kg;
-                let work_j_kg = soft_floor(isentropic_j_kg, WORK_KNEE_J_KG) / efficiency.isentropic;
-                Injected {
-                    share: T::constant(0.0),
-                    evaporator_inlet_j_kg: liquid_enthalpy_j_kg,
-                    work_j_kg,
-                    discharge_enthalpy_j_kg: suction.enthalpy_j_kg + work_j_kg * self.gas_per_compression,
-                }
+                self.in_one_stage(&suction, &isobar, liquid_enthalpy_j_kg, efficiency.isentropic)
             };
         let mass_flow_kg_s =
             efficiency.volumetric * suction.density_kg_m3 * speed_rev_s * self.displacement_m3;
@@ -237,6 +229,25 @@ impl RefrigerationCycle {
             electric_w: compression_w * self.electric_per_shaft,
             cold_residual_k: -(evaporating_k - sides.cold_inlet_k) - evaporator_w * sides.cold_resistance_k_w,
             hot_residual_k: condensing_k - sides.hot_inlet_k - condenser_w * sides.hot_resistance_k_w,
+        }
+    }
+
+    /// Compression without injection.
+    #[inline(always)]
+    fn in_one_stage<T: Real>(
+        &self,
+        suction: &SuctionState<T>,
+        isobar: &CondensingIsobar<T>,
+        liquid_enthalpy_j_kg: T,
+        isentropic_efficiency: T,
+    ) -> Injected<T> {
+        let isentropic_j_kg = isobar.enthalpy_at_entropy_j_kg(suction.entropy_j_kg_k) - suction.enthalpy_j_kg;
+        let work_j_kg = soft_floor(isentropic_j_kg, WORK_KNEE_J_KG) / isentropic_efficiency;
+        Injected {
+            share: T::constant(0.0),
+            evaporator_inlet_j_kg: liquid_enthalpy_j_kg,
+            work_j_kg,
+            discharge_enthalpy_j_kg: suction.enthalpy_j_kg + work_j_kg * self.gas_per_compression,
         }
     }
 
