@@ -205,9 +205,10 @@ def compare(refrigerant: str, loss_to_gas_share: float) -> list[float]:
         line = [deviations(point, cycle(parameters, point)) for cycle in (coolprop_cycle, tespy_cycle)]
         worst.append(max(abs(value) for result in line for value in result.values()))
         cop = point["condenser_heat_flow_w"] / point["electric_power_w"]
+        discharge_degc = point["discharge_temperature_k"] - 273.15
         print(
             f"{point['hot_return_k'] - 273.15:5.1f}  {point['cold_return_k'] - 273.15:6.1f}"
-            f"  {point['electric_power_w']:5.0f}  {cop:5.3f} {point['discharge_temperature_k'] - 273.15:5.1f} | "
+            f"  {point['electric_power_w']:5.0f}  {cop:5.3f} {discharge_degc:5.1f} | "
             + " | ".join("  ".join(f"{value:+9.1e}" for value in result.values()) for result in line)
         )
     print(f"{refrigerant}: {len(worst)} points, largest deviation {max(worst):.1e}")

@@ -86,7 +86,7 @@ class GridFile(BaseModel):
     scenario: str
     """Scenario that gives vehicle, strategy and heat requests."""
     relative_humidity: tuple[tuple[float, Annotated[float, Field(ge=0.0, le=1.0)]], ...] = ()
-    """Ambient temperatures [degC], rising, and the relative humidity at each; straight lines between. None: dry air."""
+    """Ambient temperatures [degC], rising, and relative humidity at each; lines between. None: dry."""
     cycles: Annotated[tuple[Cycle, ...], Field(min_length=1)]
     ambient_temperatures_degc: Annotated[tuple[float, ...], Field(min_length=1)]
     variants: Annotated[tuple[Variant, ...], Field(min_length=1)]
@@ -243,7 +243,8 @@ def _humidity(by_ambient: Sequence[tuple[float, float]], ambient_degc: float, va
     """Relative humidity of a trip's outside air [-]; dry where the grid gives none."""
     if not by_ambient:
         return 0.0
-    humidity = float(np.interp(ambient_degc, *zip(*by_ambient, strict=True))) + variant.humidity_offset
+    at_degc, humidities = [point[0] for point in by_ambient], [point[1] for point in by_ambient]
+    humidity = float(np.interp(ambient_degc, at_degc, humidities)) + variant.humidity_offset
     return round(min(max(humidity, 0.0), 1.0), 4)
 
 
