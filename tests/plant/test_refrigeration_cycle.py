@@ -1,4 +1,4 @@
-"""The Rust refrigeration loop against CoolProp and TESPy at 20 operating points of each built-in refrigerant."""
+"""The Rust refrigeration loop against CoolProp and TESPy at 20 points of each built-in refrigerant."""
 
 import shutil
 import sys

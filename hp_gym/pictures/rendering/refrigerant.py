@@ -59,7 +59,7 @@ def draw(canvas: Canvas, now: Mapping[str, float], plan: Plan) -> None:
 
 
 def _cop(now: Mapping[str, float], plan: Plan) -> float:
-    """Returns what is gained over power: heat to the condensers, or while the cabin is cooled from the evaporators."""
+    """Returns heat to the condensers over power; while the cabin is cooled, that from the evaporators."""
     if mode(now, plan.layout) != MODES["cold"]:
         return now["cop"]
     evaporators = [each for each in plan.layout["exchangers"] if each["level"] == "evaporating"]
