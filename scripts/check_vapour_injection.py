@@ -4,11 +4,9 @@
 # ///
 """Compares vapour injection of the Rust plant with vclibpy's flowsheets, at equal pressures and efficiencies.
 
-vclibpy's flow sheets with injection give the states, CoolProp the properties. The flash tank is its
-phase separator. Its own
-economiser (0.1.2) does not close the energy balance (`h_7 = h - dh * m`), so there the class is derived
-with the balance and
-the effectiveness of ours; everything else is vclibpy's.
+vclibpy's flow sheets with injection give the states, CoolProp the properties. The flash tank is its phase
+separator. Its own economiser (0.1.2) does not close the energy balance (`h_7 = h - dh * m`), so there the
+class is derived with the balance and the effectiveness of ours; everything else is vclibpy's.
 
     uv run scripts/check_vapour_injection.py
 """
@@ -45,7 +43,9 @@ def rust_points(fluid: str, kind: str) -> tuple[dict[str, Any], list[Point]]:
     lines = text.splitlines()
     parameters = tomllib.loads("\n".join(line[2:] for line in lines if line.startswith("# ")))
     rows = csv.DictReader(line for line in lines if not line.startswith("#"))
-    points = [{key: value if key == "status" else float(value) for key, value in row.items()} for row in rows]
+    points: list[Point] = [
+        {key: value if key == "status" else float(value) for key, value in row.items()} for row in rows
+    ]
     return parameters, [point for point in points if point["mass_flow_kg_s"] > 0.0]
 
 
@@ -69,38 +69,38 @@ def efficiencies(compressor: dict[str, float], ratio: float, speed: float) -> tu
     return filling / (1.0 + leakage), isentropic
 
 
-class GivenCompressor(Compressor):
+class GivenCompressor(Compressor):  # type: ignore[misc]  # vclibpy has no types
     """A stage with given efficiencies."""
 
     def __init__(self, displacement_m3: float, isentropic: float, volumetric: float) -> None:
         super().__init__(N_max=1.0, V_h=displacement_m3)
         self.isentropic, self.volumetric = isentropic, volumetric
 
-    def get_lambda_h(self, inputs: Inputs) -> float:  # noqa: ARG002
+    def get_lambda_h(self, **_: Any) -> float:
         """Volumetric efficiency."""
         return self.volumetric
 
-    def get_eta_isentropic(self, p_outlet: float, inputs: Inputs) -> float:  # noqa: ARG002
+    def get_eta_isentropic(self, **_: Any) -> float:
         """Isentropic efficiency."""
         return self.isentropic
 
-    def get_eta_mech(self, inputs: Inputs) -> float:  # noqa: ARG002
-        """Mechanical efficiency."""
+    def get_eta_mech(self, **_: Any) -> float:
+        """No loss of the motor."""
         return 1.0
 
 
-class NoExchanger(HeatExchanger):
+class NoExchanger(HeatExchanger):  # type: ignore[misc]
     """Only its states count here."""
 
     def __init__(self) -> None:
         pass
 
-    def calc(self, inputs: Inputs, fs_state: FlowsheetState) -> tuple[float, float]:  # noqa: ARG002
-        """No heat."""
+    def calc(self, **_: Any) -> tuple[float, float]:
+        """Is abstract and never called."""
         return 0.0, 0.0
 
 
-class Economiser(BaseVaporInjection):
+class Economiser(BaseVaporInjection):  # type: ignore[misc]
     """Injection from an economiser of given effectiveness, with the energy balance closed."""
 
     flowsheet_name = "economiser of given effectiveness"
@@ -108,7 +108,7 @@ class Economiser(BaseVaporInjection):
     superheat_k = 0.0
 
     def calc_injection(self) -> tuple[float, float, Any]:
-        """Injected share and both enthalpies, as vclibpy wants them."""
+        """Injected share of the whole flow, enthalpy of the gas, state of the cooled liquid."""
         liquid, wet = self.condenser.state_outlet, self.high_pressure_valve.state_outlet
         distance = liquid.T - wet.T
         superheat = distance / (1.0 + (distance / self.superheat_k) ** 4) ** 0.25
@@ -130,7 +130,7 @@ def stage_efficiency(
     def excess(efficiency: float) -> float:
         between = media.calc_state("PH", middle, suction.h + first / efficiency)
         second = media.calc_state("PS", high, between.s).h - between.h
-        return (first + second) / efficiency - work
+        return float((first + second) / efficiency - work)
 
     return float(brentq(excess, whole, 1.0, xtol=1e-10))
 
@@ -141,9 +141,8 @@ def vclibpy_cycle(fluid: str, kind: str, parameters: dict[str, Any], point: Poin
     low = media.calc_state("TQ", point["evaporating_temperature_k"], 1.0).p
     high = media.calc_state("TQ", point["condensing_temperature_k"], 0.0).p
     if parameters["injection"]["pressure_position"] != 0.5:
-        raise ValueError(
-            "vclibpy 0.1.2 injects at the geometric mean: another factor in its inputs is no number for it"
-        )
+        msg = "vclibpy 0.1.2 injects at the geometric mean: another factor in its inputs is no number for it"
+        raise ValueError(msg)
     middle = math.sqrt(low * high)
     machine = parameters["compressor"]
     volumetric, whole = efficiencies(machine, high / low, point["speed_rev_s"])
@@ -177,8 +176,7 @@ def vclibpy_cycle(fluid: str, kind: str, parameters: dict[str, Any], point: Poin
 def results(sheet: BaseVaporInjection, electrical_efficiency: float) -> dict[str, float]:
     """What the plant uses, from the states of a flow sheet.
 
-    The flow sheet has a displacement for the upper stage too; ours has one machine, whose suction flow
-    counts.
+    The flow sheet has a displacement for the upper stage too; ours is one machine, whose suction flow counts.
     """
     low, high = sheet.low_pressure_compressor, sheet.high_pressure_compressor
     flow = low.m_flow

@@ -1,9 +1,8 @@
 """Writes the saturation-based property table of one subcritical refrigerant, with its limits, from CoolProp.
 
 Everything is one-dimensional in saturation temperature; distances from saturation enter as polynomials whose
-coefficients are columns of the table. `table_evaluator.py` documents how the columns are read. The
-limits stand in
-the header: a vehicle gets those that it does not give itself together with the fluid.
+coefficients are columns of the table. `table_evaluator.py` documents how the columns are read. The limits
+stand in the header: a vehicle gets those that it does not give itself together with the fluid.
 
     python configs/refrigerants/make_table.py R134a configs/refrigerants/r134a.csv \
         --reference rust_core/plant/tests/data/r134a_reference.csv
@@ -94,8 +93,7 @@ EXPLANATION = """\
 # isobar_enthalpy_k: coefficient of (s - dew_entropy)^k in h(p_sat, s); 0 is dew_enthalpy, 1 temperature_k
 # isobar_temperature_k: coefficient of (h - dew_enthalpy)^k in T(p_sat, h) - temperature_k [K per (J/kg)^k]
 # isobar_range: largest h - dew_enthalpy of that polynomial, at {highest} K; linear beyond [J/kg]
-# Lines with "#:" are TOML: the critical point and the limits that a vehicle has with this fluid unless
-# it gives its own.
+# Lines with "#:" are TOML: critical point, and limits of a vehicle with this fluid that gives none itself.
 # Limits: {limits.source}
 #: critical_temperature_degc = {critical_degc:.2f}
 #: critical_pressure_bar = {critical_bar:.3f}
@@ -225,9 +223,8 @@ def limits_of(name: str, fluid: CoolProp.AbstractState) -> Limits:
 def write_table(name: str, path: Path, **given: float | None) -> None:
     """Computes and writes the table; limits that are given stand in place of the fluid's."""
     fluid = subcritical_fluid(name)
-    limits = replace(
-        limits_of(name, fluid), **{key: value for key, value in given.items() if value is not None}
-    )
+    chosen = {key: value for key, value in given.items() if value is not None}
+    limits = replace(limits_of(name, fluid), **chosen)
     distance = entropy_distance(fluid)
     lines = [",".join(COLUMNS)]
     lines += [",".join(f"{value:.11g}" for value in row(fluid, t, distance)) for t in grid(fluid)]
@@ -296,14 +293,14 @@ def main() -> int:
     parser.add_argument("output", type=Path, help="table to write")
     parser.add_argument("--reference", type=Path, help="also write random CoolProp states for the Rust test")
     parser.add_argument("--states", type=int, default=400, help="how many of them")
-    for key in ("maximum_pressure_bar", "minimum_suction_pressure_bar", "maximum_discharge_temperature_degc"):
+    keys = ("maximum_pressure_bar", "minimum_suction_pressure_bar", "maximum_discharge_temperature_degc")
+    for key in keys:
         parser.add_argument(
             f"--{key.replace('_', '-')}", type=float, help="instead of the fluid's usual limit"
         )
     arguments = vars(parser.parse_args())
-    name, output, reference, count = (
-        arguments.pop(key) for key in ("fluid", "output", "reference", "states")
-    )
+    others = ("fluid", "output", "reference", "states")
+    name, output, reference, count = (arguments.pop(key) for key in others)
     try:
         write_table(name, output, **arguments)
     except ValueError as error:

@@ -121,7 +121,7 @@ def draw(
         _draw_bar(canvas, y + max(16.0 * share, 9.0), now[column] / FULL_W, colour)
 
 
-def mode(now: Mapping[str, float], layout: Layout) -> str:
+def _mode(now: Mapping[str, float], layout: Layout) -> str:
     """Says what is done for the cabin that counts for comfort."""
     cabin = next(each["member"] for each in layout["cabins"] if each["comfort"])
     connection = next(each["connection"] for each in layout["members"] if each["name"] == cabin)
@@ -144,10 +144,10 @@ def _draw_header(canvas: Canvas, now: Mapping[str, float], layout: Layout) -> No
         (number(3.6 * now["speed_m_s"], 0), "km/h"),
         (number(now["ambient_temperature_degc"], 0), "°C outside"),
     )
-    shown = mode(now, layout)
+    mode = _mode(now, layout)
     canvas.text(
         (at.MARGIN + canvas.text_width(TITLE, 16.0, bold=True) + 12.0, HEADER_LINE),
-        shown,
+        mode,
         12.0,
         MUTED,
         anchor="ls",

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Final
 from hp_gym.pictures.rendering import colours, loops
 from hp_gym.pictures.rendering import positions as at
 from hp_gym.pictures.rendering.colours import CLOSED, INK, MUTED, OUTLINE, REFRIGERANT, WHITE
-from hp_gym.pictures.rendering.instruments import MODES, mode
 from hp_gym.pictures.rendering.plan import ABOVE, BELOW
 from hp_gym.pictures.rendering.quantities import UNKNOWN, degc, kilowatt, number
 
@@ -54,16 +53,8 @@ def draw(canvas: Canvas, now: Mapping[str, float], plan: Plan) -> None:
         ("evaporating_pressure_bar", EVAPORATOR_TOP - 18.0),
     ):
         canvas.text((MIDDLE_X, y), f"{number(now[name]) if running else UNKNOWN} bar", 10.0, ink, bold=True)
-    cop = number(_cop(now, plan)) if running else UNKNOWN
+    cop = number(now["cop"]) if running else UNKNOWN
     canvas.text((MIDDLE_X + 4.0, at.CENTRE_Y - 4.0), cop, 15.0, ink, bold=True)
-
-
-def _cop(now: Mapping[str, float], plan: Plan) -> float:
-    """Returns what is gained over power: heat to the condensers; of the evaporators while a cabin is cooled."""
-    if mode(now, plan.layout) != MODES["cold"]:
-        return now["cop"]
-    evaporators = [each for each in plan.layout["exchangers"] if each["level"] == "evaporating"]
-    return sum(abs(now[each["flow"]]) for each in evaporators) / now["compressor_power_w"]
 
 
 def _end(lines: list[Line], side: float, *, compressor: bool) -> float:
