@@ -35,7 +35,7 @@ def nodes_left() -> int:
     """Number of nodes, once the cluster has seen that one is lost, or after a minute."""
     deadline_s = time.monotonic() + 60.0
     while True:
-        nodes: list[dict[str, Any]] = ray.nodes()  # type: ignore[no-untyped-call]
+        nodes: list[dict[str, Any]] = ray.nodes()  # type: ignore[no-untyped-call, unused-ignore]
         alive = sum(bool(node["Alive"]) for node in nodes)
         if alive < 2 or time.monotonic() > deadline_s:
             return alive

@@ -37,7 +37,7 @@ class OnRay:
         remote = ray.remote(num_cpus=1, max_retries=-1)(drive_on_same)
         waiting: dict[Any, int] = {}
         left = iter(chunks)
-        resources: dict[str, float] = ray.cluster_resources()  # type: ignore[no-untyped-call]
+        resources: dict[str, float] = ray.cluster_resources()  # type: ignore[no-untyped-call, unused-ignore]
         most = _WAITING * max(int(resources.get("CPU", 1)), 1)
         try:
             while True:
