@@ -496,24 +496,9 @@ impl Plant {
         let circuit = self.battery.during(&state.battery, battery_k, segment.step_s);
         let limits = circuit.power_limits();
         let base_w = base_load_w::<S>(shape, flows);
-        let mut left_w = limits.discharge_w - drive.electrical_w() - base_w;
-        state.short_of_power = left_w < 0.0;
-        record.end_speed_m_s = sight.disturbance.end_speed_m_s;
-        *slower_m_s = 0.0;
-        if drive.driving.is_some() && (left_w < 0.0 || drive.beyond_motor()) {
-            let supply = TractionSupply {
-                most_w: (limits.discharge_w - base_w).max(0.0),
-                recovery_w: limits.charge_w + base_w,
-            };
-            let wanted_m_s = segment.end_m_s;
-            segment = self.reachable(sight, state, &segment, supply);
-            drive = self.road(sight, state, &segment, flows);
-            left_w = limits.discharge_w - drive.electrical_w() - base_w;
-            // Where the motor is what limits, the battery has something left.
-            state.short_of_power = left_w < ROUNDING_W;
-            *slower_m_s = wanted_m_s - segment.end_m_s;
-            record.end_speed_m_s = segment.end_m_s;
-        }
+        let left_w =
+            self.drive(sight, state, (&limits, base_w), &mut segment, &mut drive, slower_m_s, record);
+        let flows = &mut record.flows;
         let spare_w = left_w.max(0.0);
 
         let conditions = self.conditions::<S>(sight, state, period, &blown_w_k, segment.speed_m_s);
@@ -542,11 +527,44 @@ impl Plant {
         tamper(Stage::Ledger, flows);
         let stored = self.stored_change(shape, state, &segment, &circuit, &battery.state, &end_k);
         record.ledger = self.ledger.balance(shape.flows, flows, &stored, segment.step_s);
-        state.temperatures_k = end_k;
-        state.battery = battery.state;
-        record.battery_voltage_v = battery.voltage_v;
-        record.battery_current_a = battery.current_a;
+        (state.temperatures_k, state.battery) = (end_k, battery.state);
+        (record.battery_voltage_v, record.battery_current_a) = (battery.voltage_v, battery.current_a);
         record.power_limits = limits;
+    }
+
+    /// Driving as asked for, or as fast as motor and battery allow with the loads that are fed first [W]; returns what it leaves
+    /// of the battery's power, which is negative where even those lack some [W].
+    #[allow(clippy::too_many_arguments, reason = "what the phases of a step hand on, nothing of it kept")]
+    #[inline(always)]
+    fn drive<'a>(
+        &'a self,
+        sight: Sight<'_>,
+        state: &mut State,
+        (limits, base_w): (&PowerLimits, f64),
+        segment: &mut Segment,
+        drive: &mut Drive<'a>,
+        slower_m_s: &mut f64,
+        record: &mut StepRecord,
+    ) -> f64 {
+        let mut left_w = limits.discharge_w - drive.electrical_w() - base_w;
+        state.short_of_power = left_w < 0.0;
+        record.end_speed_m_s = sight.disturbance.end_speed_m_s;
+        *slower_m_s = 0.0;
+        if drive.driving.is_some() && (left_w < 0.0 || drive.beyond_motor()) {
+            let supply = TractionSupply {
+                most_w: (limits.discharge_w - base_w).max(0.0),
+                recovery_w: limits.charge_w + base_w,
+            };
+            let wanted_m_s = segment.end_m_s;
+            *segment = self.reachable(sight, state, segment, supply);
+            *drive = self.road(sight, state, segment, &mut record.flows);
+            left_w = limits.discharge_w - drive.electrical_w() - base_w;
+            // Where the motor is what limits, the battery has something left.
+            state.short_of_power = left_w < ROUNDING_W;
+            *slower_m_s = wanted_m_s - segment.end_m_s;
+            record.end_speed_m_s = segment.end_m_s;
+        }
+        left_w
     }
 
     /// A piece of a second, asked to end at the speed that it would have if all before had ended at theirs.
