@@ -9,12 +9,14 @@ SCENARIO = "jeffs2019/case1-4"
 
 
 def main() -> None:
-    """Heats the cabin with three refrigerants."""
+    """Heats the cabin with five refrigerants."""
     runs = {
         "R134a, as in the paper": hp_gym.simulate(SCENARIO),
-        "R1234yf, by name": hp_gym.simulate(SCENARIO, overrides={"vehicle.refrigerant": "r1234yf"}),
-        "R152a, by path": hp_gym.simulate(SCENARIO, vehicle=CAR),
+        "R1234ze(E), by path": hp_gym.simulate(SCENARIO, vehicle=CAR),
     }
+    # With its name comes what the fluid's machines stand: highest and lowest pressure, discharge temperature.
+    for name in ("R1234yf", "R290", "R152a"):
+        runs[f"{name}, by name"] = hp_gym.simulate(SCENARIO, overrides={"vehicle.refrigerant": name})
     for name, run in runs.items():
         summary = run.summary
         print(

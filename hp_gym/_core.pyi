@@ -33,6 +33,7 @@ __all__ = [
     "reward_parts",
     "reward_terms",
     "signals",
+    "summaries",
     "totals",
     "vehicle_layout",
 ]
@@ -367,6 +368,21 @@ def totals(
     scenarios: Sequence[str], overrides: Sequence[str] = ..., vehicle: str | None = None
 ) -> list[tuple[dict[str, float], str]]:
     """Totals of several scenarios with the same overrides, run side by side."""
+
+def summaries(
+    runs: Sequence[tuple[str, str | None, str | None, Sequence[str]]], threads: int, substeps: int = 1
+) -> tuple[list[str], NDArray[np.float64], list[str | None], list[str | None]]:
+    """Totals of many runs, side by side, each bit for bit what `simulate` gives.
+
+    Args:
+        runs: Scenario, controller, vehicle and overrides of each, as `Experiment` takes them.
+        threads: Native threads.
+        substeps: Steps of the plant in each second.
+
+    Returns:
+        Names of the totals; a row of them for each run, NaN where one does not exist; why each run ended,
+        None where it was refused; and why it was refused, else None.
+    """
 
 def plant_step_seconds(
     scenario: str, seed: int | None = None, vehicle: str | None = None

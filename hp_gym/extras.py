@@ -19,8 +19,10 @@ EXTRAS: Final[Mapping[str, tuple[str, ...]]] = {
     "data": ("h5py", "minari", "PIL", "pydantic", "safetensors"),
     "export": ("onnx", "onnxruntime", "pydantic", "safetensors"),
     "plot": ("matplotlib", "PIL"),
+    "ray": ("pandas", "pyarrow", "ray"),
     "speed": ("fastsim",),
-    "studies": ("matplotlib", "optuna", "PIL", "pydantic", "scipy", "tomlkit"),
+    "studies": ("matplotlib", "optuna", "PIL", "pydantic", "scipy", "sqlalchemy", "tomlkit"),
+    "sweep": ("matplotlib", "pandas", "PIL", "pyarrow", "SALib", "scipy", "xarray"),
     "train": (
         "pydantic", "safetensors", "sb3_contrib", "stable_baselines3", "tensorboard", "tomlkit", "torch"
     ),

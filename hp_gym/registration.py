@@ -10,8 +10,8 @@ from hp_gym import _core
 ENV_ID: Final = "EVHeatPump-v0"
 """The default: one choice for each component."""
 
-LONGEST_TRIP_STEPS: Final = 1_000_000
-"""As many seconds as the longest cycle there can be: cuts no trip, whatever the control interval."""
+LONGEST_TRIP_STEPS: Final = 1_000_900
+"""Seconds of the longest cycle and the longest delay there can be: cuts no trip, whatever the interval."""
 
 _DEFAULT: Final = ("env:EVHeatPumpEnv", "vector_env:EVHeatPumpVectorEnv")
 

@@ -8,8 +8,10 @@ import os
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
-from hp_gym import extras, signals, vehicle_layout
+from hp_gym import extras, later, notebooks, signals, vehicle_layout
 from hp_gym.files import atomic_write, require_suffix
+from hp_gym.key_units import unit_of
+from hp_gym.near_names import unknown
 
 # pandas takes a second to import: it is loaded by the methods that need it.
 if TYPE_CHECKING:
@@ -18,9 +20,23 @@ if TYPE_CHECKING:
 
     import numpy as np
     import pandas as pd
+    import xarray as xr
     from numpy.typing import NDArray
 
 TABLE_SUFFIXES: Final = (".csv", ".parquet")
+
+_SHOWN: Final = (
+    "energy_kwh",
+    "energy_kwh_per_100_km",
+    "final_soc_pct",
+    "duration_s",
+    "distance_km",
+    "discomfort_k",
+    "time_to_comfort_s",
+    "heat_pump_cop",
+    "limit_breaches",
+)
+"""Totals that a notebook shows; `summary` has all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +46,7 @@ class Trajectory:
     Attributes:
         scenario: Name or path of the scenario.
         controller: Name of the controller.
-        end_reason: `arrived`, `unserved_energy` or `battery_empty`.
+        end_reason: `arrived`, `battery_empty`, `immobile` or `late`.
         summary: Totals by name; a name ends with its unit. NaN, in JSON null, where one does not exist,
             as energy per distance of a trip of 0 km.
         limits: Limits that the run is judged by.
@@ -62,9 +78,12 @@ class Trajectory:
         """Returns the values of a column.
 
         Raises:
-            KeyError: There is no such column.
+            KeyError: There is no such column; the message says what is near.
         """
-        return self.values[:, self._places[column]]
+        place = self._places.get(column)
+        if place is None:
+            raise KeyError(unknown("column", column, self.columns))
+        return self.values[:, place]
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -86,6 +105,36 @@ class Trajectory:
             import pandas as pd
 
         return vehicle_layout.keep(pd.DataFrame(self.values.copy(), columns=list(self.columns)), self.layout)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Returns a data set over time, a variable a signal with its unit and meaning in `attrs`.
+
+        Raises:
+            MissingExtraError: xarray is not installed.
+        """
+        with extras.needed("sweep"):
+            import xarray as xr
+
+        told = {name: {"units": unit, "long_name": meaning} for name, unit, meaning in self.signals}
+        variables = {
+            name: (("time_s",), self[name].copy(), told[name]) for name in self.columns if name != "time_s"
+        }
+        attributes: dict[str, Any] = {"scenario": self.scenario, "controller": self.controller}
+        attributes |= {"end_reason": self.end_reason, **self.summary}
+        time_s = (("time_s",), self["time_s"].copy(), told["time_s"])
+        return xr.Dataset(variables, {"time_s": time_s}, attributes)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the totals, and the picture where Matplotlib is installed."""
+        shown = [name for name in _SHOWN if name in self.summary]
+        rows = [(name, f"{self.summary[name]:.6g}", unit_of(name)) for name in shown]
+        title = f"{self.scenario} with {self.controller}: {self.end_reason.replace('_', ' ')}"
+        table = notebooks.table(title, rows)
+        try:
+            plot = later.function("hp_gym.pictures.plotting", "plot")
+        except extras.MissingExtraError:
+            return table
+        return table + notebooks.picture(lambda path: plot(self, path))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the table to a .csv or .parquet file.

@@ -88,7 +88,10 @@ class Cabin(TypedDict):
     exhaust_recovery: str | None
     blower_power: str
     solar: str
+    solar_soft_furnishings: str
+    solar_hard_furnishings: str
     occupants: str
+    latent: str | None
 
 
 class Link(TypedDict):

@@ -211,7 +211,7 @@ def readers(checkpoint_bytes: bytes) -> list[Reader]:
         ("csv", b"time_s,speed_km_h\n0,0\n10,36.5\n20,20\n30,0\n", read_cycle),
         ("csv", built_in("refrigerant", "r134a"), read_refrigerant),
         ("toml", built_in("training configuration", "ppo"), lambda path: configuration.load(str(path))),
-        ("toml", built_in("benchmark", "heldout-v0"), lambda path: grid.load(str(path))),
+        ("toml", built_in("benchmark", "heldout-v1"), lambda path: grid.load(str(path))),
         ("toml", built_in("calibration", "jeffs2019"), lambda path: problem.load(str(path))),
         ("safetensors", _core.reference_policy(_core.reference_policy_names()[0]), policies.load),
         ("onnx", onnx_file.to_model(policy).SerializeToString(), policies.load),

@@ -15,6 +15,7 @@ settings.load_profile("hp_gym")
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Adds what asks for more than a change needs."""
+    parser.addoption("--long-examples", action="store_true", help="run the examples that take ten seconds")
     parser.addoption(
         "--all-climates",
         action="store_true",

@@ -14,7 +14,12 @@ import hp_gym
 from hp_gym import extras
 
 ROOT = Path(__file__).parents[1]
-IMPORT_NAMES = {"pillow": "PIL", "sb3-contrib": "sb3_contrib", "stable-baselines3": "stable_baselines3"}
+IMPORT_NAMES = {
+    "pillow": "PIL",
+    "salib": "SALib",
+    "sb3-contrib": "sb3_contrib",
+    "stable-baselines3": "stable_baselines3",
+}
 # Typer brings pydantic along.
 ALL = sorted({package for packages in extras.EXTRAS.values() for package in packages} - {"pydantic"})
 
@@ -92,6 +97,7 @@ def test_the_bare_package_makes_environments(tmp_path: Path) -> None:
         "import gymnasium as gym, hp_gym; from hp_gym.envs.hpcu_policy import HpcuPolicy\n"
         "env = gym.make('EVHeatPump-v0'); observation, _ = env.reset(seed=0)\n"
         "env.step(HpcuPolicy(env)(observation))\n"
+        "from hp_gym import *; assert 'sweep' in dir(hp_gym)\n"
         "envs = gym.make_vec('EVHeatPump-v0', num_envs=3); envs.reset(seed=0)\n"
         "envs.step(envs.action_space.sample())"
     )
@@ -108,6 +114,8 @@ def test_the_bare_package_makes_environments(tmp_path: Path) -> None:
         (["reproduce"], "plot"),
         (["calibrate"], "studies"),
         (["tune"], "studies"),
+        (["optimise", "--axis", "htc_set_point_degc=40:90"], "studies"),
+        (["sweep", "--axis", "htc_set_point_degc=40,90"], "sweep"),
         (["train"], "train"),
         (["record", "hpcu"], "data"),
         (["export", "policy.safetensors", "--out", "policy.onnx"], "export"),
@@ -133,6 +141,10 @@ def test_a_command_without_its_extra_says_in_one_line_how_to_get_it(
         ("env = gym.make('EVHeatPump-v0', render_mode='rgb_array'); env.reset(); env.render()", "plot"),
         ("from hp_gym.pictures.window import Window; Window()", "plot"),
         ("import hp_gym.envs.sb3", "train"),
+        ("hp_gym.simulate('ours/commute-minus5').to_xarray()", "sweep"),
+        ("hp_gym.sweep({'htc_set_point_degc': [50.0]})", "sweep"),
+        ("hp_gym.optimise({'htc_set_point_degc': (50.0, 80.0)})", "studies"),
+        ("hp_gym.calibrate('jeffs2019')", "studies"),
         ("import hp_gym.agents.policies", "benchmark"),
         ("import hp_gym.agents.controllers", "benchmark"),
         ("import hp_gym.agents.training.train", "train"),
@@ -169,6 +181,8 @@ def test_a_part_without_its_extra_raises_an_error_that_names_it(
             ["studies"],
             ["studies.calibration.held_out", "studies.tuning.search", "studies.reproduction.figures"],
         ),
+        (["studies"], ["studies.optimise.front_plot", "studies.calibration.calibrating"]),
+        (["sweep"], ["studies.sweep.sweep_plots", "studies.sweep.sensitivities", "studies.sweep.sweeping"]),
         (["train"], ["agents.training.train", "agents.policies.from_sb3", "envs.sb3"]),
         (["export", "train"], ["agents.policies.sb3_zip", "agents.policies.equality"]),
     ],
@@ -192,6 +206,15 @@ def test_the_reference_policies_need_no_torch(tmp_path: Path) -> None:
     result = python(code, without("benchmark"), tmp_path)
     assert result.returncode == 0, result.stderr
     assert int(result.stdout) > 0
+
+
+def test_a_sweep_on_a_cluster_without_ray_says_how_to_get_it(tmp_path: Path) -> None:
+    arguments = ["sweep", "--axis", "htc_set_point_degc=50,60", "--on", "ray", "--out", "sweep"]
+    result = hp_gym_command(arguments, without("sweep"), tmp_path)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert len(result.stderr.splitlines()) == 1, result.stderr
+    assert 'pip install "ev-heat-pump-gym[ray]"' in result.stderr
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_another_missing_module_is_not_taken_for_an_extra() -> None:

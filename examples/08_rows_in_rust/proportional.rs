@@ -37,6 +37,7 @@ fn constant_settings(parameters: &ProportionalParameters) -> ConstantSettings {
         htc_flow_kg_s: parameters.coolant_flow_kg_s,
         chiller_flow_kg_s: parameters.coolant_flow_kg_s,
         blower_level: 1.0,
+        cooling_blower_level: 1.0,
         heating_recirculation: 0.0,
         cooling_recirculation: 0.7,
     }

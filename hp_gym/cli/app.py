@@ -8,12 +8,14 @@ from hp_gym.cli import interrupts
 from hp_gym.cli.benchmark_command import benchmark
 from hp_gym.cli.calibrate_command import calibrate
 from hp_gym.cli.export_command import export
+from hp_gym.cli.optimise_command import optimise
 from hp_gym.cli.output import one_line_for_missing_packages
 from hp_gym.cli.record_command import record
 from hp_gym.cli.reproduce_command import reproduce
 from hp_gym.cli.run_command import run
 from hp_gym.cli.scenarios_command import scenarios
 from hp_gym.cli.speed_command import speed
+from hp_gym.cli.sweep_command import sweep
 from hp_gym.cli.train_command import train
 from hp_gym.cli.tune_command import tune
 from hp_gym.ctrl_c import hook
@@ -31,6 +33,8 @@ for command, kept in (
     (scenarios, ""),
     (reproduce, _AS_BEFORE),
     (calibrate, _AS_BEFORE),
+    (sweep, "runs so far are kept, and the same command goes on with them"),
+    (optimise, "trials so far are kept, and the same command goes on with them"),
     (tune, "trials so far are kept, and the same command goes on with them"),
     (train, "nothing was written"),
     (export, _AS_BEFORE),

@@ -23,7 +23,7 @@ def benchmark(
     ] = None,
     *,
     out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("out/benchmark"),
-    grid: Annotated[str, typer.Option(help="Held-out trips: name or path.")] = "heldout-v0",
+    grid: Annotated[str, typer.Option(help="Held-out trips: name or path.")] = "heldout-v1",
     seeds: Annotated[
         str | None, typer.Option(help="Training seeds of ppo, for example 0,2; all by default.")
     ] = None,

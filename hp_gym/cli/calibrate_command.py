@@ -1,6 +1,5 @@
-"""`hp-gym calibrate`: fit of the vehicle to published totals."""
+"""`hp-gym calibrate`: fit of the vehicle to published totals and measurements."""
 
-from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from time import perf_counter
@@ -42,14 +41,18 @@ def calibrate(
     subset: Annotated[
         bool, typer.Option("--subset", help="Refit to the calibration's subset and predict the rest.")
     ] = False,
+    held_back: Annotated[
+        bool, typer.Option("--held-back", help="Look at measurements that are held back: once, at the end.")
+    ] = False,
     write: Annotated[
         bool, typer.Option("--write", help="Write the values into the checkout's configuration files.")
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
-    """Fits parameters within bounds to the paper's totals: many parameters, few numbers."""
-    from hp_gym.studies.calibration import calibrated_files, calibration_report, held_out
-    from hp_gym.studies.calibration.fit import Options, fit
+    """Fits parameters within bounds to published totals and to measured traces, as a file says."""
+    from hp_gym.studies.calibration import calibrated_files, calibration_report, held_out, measured_report
+    from hp_gym.studies.calibration.calibrating import carry_out
+    from hp_gym.studies.calibration.fit import Options
     from hp_gym.studies.calibration.problem import load
     from hp_gym.studies.calibration.progress import bar
     from hp_gym.transactions import new_contents
@@ -66,43 +69,39 @@ def calibrate(
         limit = max_evaluations or problem.maximum_evaluations
         options = Options(central=central, loss=loss.value, restarts=restarts, maximum_evaluations=limit)
         began_s = perf_counter()
-        with bar("fit", limit) as progress:
-            result = fit(problem, values, options, progress)
-        parts = []
-        fewer = replace(options, restarts=0, maximum_evaluations=max(limit // 4, 1))
-        if leave_one_out:
-            for target in problem.targets:
-                with bar(f"without {target.scenario}", fewer.maximum_evaluations or 1) as progress:
-                    parts.append(
-                        held_out.leave_out(problem, target.scenario, result.by_name(), fewer, progress)
-                    )
+        done = carry_out(problem, values, options, leave_one_out=leave_one_out, held_back=held_back, bars=bar)
+        result, parts = done.fit, done.held_out
         rest = None
         if subset:
             with bar("subset", limit) as progress:
                 rest = held_out.subset(problem, values, options, progress)
         wall_s = perf_counter() - began_s
         with new_contents(out) as folder:
-            (folder / "calibrated.toml").write_text(calibration_report.to_toml(result), encoding="utf-8")
+            done.write(folder)
         written = calibrated_files.write_back(problem, result.by_key()) if write else []
     except (ValueError, OSError) as error:
         fail(str(error))
     if json:
-        print_json(calibration_report.to_json(result, parts, rest, wall_s))
+        print_json(calibration_report.to_json(result, parts, rest, wall_s) | measured_report.to_json(done))
         return
     console.print(calibration_report.parameter_table(result))
-    console.print(
-        calibration_report.error_table("Errors of the fit", calibration_report.errors(problem, result))
-    )
+    if problem.targets:
+        console.print(
+            calibration_report.error_table("Errors of the fit", calibration_report.errors(problem, result))
+        )
+    for part in measured_report.tables(done):
+        console.print(part)
     for title, group in (("Left out one at a time", parts), ("Outside the subset", [rest] if rest else [])):
         if group:
             shown = [item for part in group for item in part.errors]
             mean_pct, largest_pct = calibration_report.mean_and_largest_energy_pct(shown)
             heading = f"{title}: energy error mean {mean_pct:.2f} %, largest {largest_pct:.2f} %"
             console.print(calibration_report.error_table(heading, shown))
+    published, measured = calibration_report.count_targets(problem), measured_report.count(problem)
+    seen = f"{published} published numbers" + (f" and {measured} measured ones" if measured else "")
     console.print(
-        f"{len(result.values)} parameters fitted to {calibration_report.count_targets(problem)} published "
-        f"numbers, {sum(result.at_bound)} at a bound; {result.evaluations} evaluations, "
-        f"{wall_s:.0f} s in all."
+        f"{len(result.values)} parameters fitted to {seen}, {sum(result.at_bound)} at a bound; "
+        f"{result.evaluations} evaluations, {wall_s:.0f} s in all."
     )
     console.print(f"Values: {out / 'calibrated.toml'}")
     for path in written:

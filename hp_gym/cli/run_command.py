@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 # What the table shows of the totals, where the vehicle has them; `--json` has all of them.
 GROUPS: Final = {
-    "Trip": ("duration_s", "distance_km", "energy_kwh", "energy_kwh_per_100_km"),
+    "Trip": ("duration_s", "delay_s", "distance_km", "energy_kwh", "energy_kwh_per_100_km"),
     "Battery": ("final_soc_pct", "final_charge_soc_pct", "mean_voltage_v", "battery_loss_energy_kwh"),
     "Comfort": ("time_to_comfort_s", "comfortable_share", "discomfort_k"),
     "Electrical energy": (
@@ -64,6 +64,9 @@ def run(
             "A key begins with scenario., vehicle. or controller.; may be repeated.",
         ),
     ] = None,
+    overrides: Annotated[
+        Path | None, typer.Option(help="A .toml file of changes, as `calibrate` and `optimise` write.")
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Write all signals, second by second, to this .csv or .parquet file.")
     ] = None,
@@ -72,8 +75,10 @@ def run(
 ) -> None:
     """Runs a scenario and shows its totals."""
     from hp_gym import simulate
+    from hp_gym.overrides import assignments
 
     try:
+        changes = [*assignments(overrides), *(changes or [])]
         trajectory = simulate(scenario, controller, changes, vehicle=vehicle)
         if out is not None:
             trajectory.save(out)
@@ -87,7 +92,7 @@ def run(
                 "scenario": trajectory.scenario,
                 "controller": trajectory.controller,
                 "vehicle": vehicle,
-                "overrides": changes or [],
+                "overrides": changes,
                 "end_reason": trajectory.end_reason,
                 "limits": trajectory.limits,
                 "summary": trajectory.summary,

@@ -132,7 +132,8 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     `clipped_shares()` says how often a value was beyond its bounds.
 
     This is what a car without navigation can know. Further rows by name: `preview` (the speed 2 to 80 s
-    ahead), `time_left_s`, and every other signal of the plant (`hp_gym._core.observation_table()`).
+    ahead), `time_left_s`, `distance_behind_m`, and every other signal of the plant
+    (`hp_gym._core.observation_table()`).
 
     ## Rewards
 
@@ -147,8 +148,9 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     - `reward_heat_left`: at arrival, a credit for the heat stored since the start in cabin, battery (up to 20
       degC), coolant loops and thermal battery. 0 by default. In a climate hotter than 22 degC it is the heat
       that is gone from cabin, loops and thermal battery.
-    - `reward_penalties`: 500 points for a trip that ends before arrival; optional prices for a battery
-      outside its window and for stops of the compressor that a protection forced.
+    - `reward_penalties`: 1000 points for an hour that a trip takes beyond its cycle, more than slower driving
+      saves; 500 points for a trip that ends before arrival; optional prices for a battery outside its window
+      and for stops of the compressor that a protection forced.
 
     `reward` chooses among `balanced`, `energy`, `comfort`, `stored-heat` and `durable`, a file, or single
     weights (`{"base": "balanced", "discomfort_per_k_h": 8.0}`). A Python function of named parts is a reward
@@ -176,10 +178,12 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
 
     ## Episode End
 
-    1. Termination: arrival at the end of the cycle, with the credit for heat left. `end_reason()` is
-       `arrived`, `kpis()` are the KPIs of the trip.
-    2. Termination: `unserved_energy`, the battery could not deliver what driving needed.
-    3. Termination: `battery_empty`.
+    1. Termination: arrival where the cycle's way ends, with the credit for heat left. `end_reason()` is
+       `arrived`, `kpis()` are the KPIs of the trip. A car that cannot follow its cycle falls behind, drives
+       the missing distance after it, and arrives late (`kpis()["delay_s"]`).
+    2. Termination: `battery_empty`, the usable state of charge is 0.
+    3. Termination: `immobile`, the car stood for 300 s although its driver wanted to move.
+    4. Termination: `late`, the car had not arrived 900 s after the end of its cycle.
 
     The environment itself never truncates; `max_episode_steps` of `gymnasium.make` and `make_vec` does. Its
     registered value is that of the longest cycle there can be, which cuts no trip.
@@ -401,7 +405,7 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
         return self._episode.trip()
 
     def end_reason(self) -> str | None:
-        """Returns `arrived`, `unserved_energy` or `battery_empty` once the trip is over, None before."""
+        """Returns `arrived`, `battery_empty`, `immobile` or `late` once the trip is over, None before."""
         return self._episode.end_reason()
 
     def clipped_shares(self) -> dict[str, float]:

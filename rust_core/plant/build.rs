@@ -35,6 +35,7 @@ mod config {
 #[path = "src/media"]
 mod media {
     pub mod air;
+    pub mod moist_air;
 }
 
 #[allow(dead_code, clippy::all, reason = "the crate uses and checks all of it")]
@@ -114,11 +115,12 @@ fn write_shape(code: &mut String, name: &str, own: &architecture::indices::Owned
     let view = own.view();
     writeln!(
         code,
-        "        Indices {{ nodes: {}, stores: {}, battery: {:?}, transmission: {:?}, compressor_row: {:?}, \
-         set_point_row: {:?}, flows: {}, actuators: {}, weights: {}, {} }}\n    }};\n}}",
+        "        Indices {{ nodes: {}, stores: {}, battery: {:?}, motor: {:?}, transmission: {:?}, \
+         compressor_row: {:?}, set_point_row: {:?}, flows: {}, actuators: {}, weights: {}, {} }}\n    }};\n}}",
         view.nodes,
         view.stores,
         view.battery,
+        view.motor,
         view.transmission,
         view.compressor_row,
         view.set_point_row,

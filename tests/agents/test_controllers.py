@@ -149,4 +149,4 @@ def test_rules_act_in_full_resolution() -> None:
     env = driven("hpcu", steps=5)
     actions = env.rule_based_actions()
     assert actions.dtype == np.float32
-    assert actions.shape == (2, 25)
+    assert actions.shape == (2, 26)

@@ -52,7 +52,7 @@ WORDS = {
 }
 
 
-SHIPPED = {"training configuration": "ppo", "benchmark": "heldout-v0", "calibration": "jeffs2019"}
+SHIPPED = {"training configuration": "ppo", "benchmark": "heldout-v1", "calibration": "jeffs2019"}
 
 
 def attempt(read: Callable[[], Any]) -> Any:

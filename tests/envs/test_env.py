@@ -248,9 +248,30 @@ def test_an_empty_battery_ends_the_trip_at_a_price() -> None:
         if terminated:
             break
     inner: Any = env.unwrapped
-    assert inner.end_reason() in {"battery_empty", "unserved_energy"}
+    assert inner.end_reason() == "battery_empty"
     assert not truncated
     assert float(reward) < -400.0
+
+
+def test_a_weak_car_arrives_late_with_the_whole_way_driven_and_pays_for_it() -> None:
+    weak = {"scenario.cycle": "us06", "vehicle.motor.maximum_mechanical_power_w": 40_000.0}
+    env = make(scenario="jeffs2019/case1-1", overrides=weak, observations=["default", "distance_behind_m"])
+    env.reset(seed=0)
+    inner: Any = env.unwrapped
+    duration_s, rewards, behind_m, terminated = inner.trip()["duration_s"], [], [], False
+    while not terminated:
+        observation, reward, terminated, truncated, _ = env.step(np.array([0, 0, 0, 0, 0, 1, 1, 0]))
+        rewards.append(float(reward))
+        behind_m.append(inner.decode(observation)["distance_behind_m"])
+    delay_s = len(rewards) - duration_s
+    assert inner.end_reason() == "arrived"
+    assert not truncated
+    assert inner.kpis()["delay_s"] == inner.summary()["delay_s"] == delay_s > 30
+    assert max(behind_m) == pytest.approx(inner.summary()["furthest_behind_m"], rel=1e-3)
+    experiment = _core.Experiment("jeffs2019/case1-1", None, ['scenario.cycle="us06"'])
+    assert inner.summary()["distance_km"] == pytest.approx(experiment.distance_m / 1000.0, abs=1e-3)
+    # 1000 points an hour, besides energy and discomfort.
+    assert sum(rewards) < -1000.0 / 3600.0 * delay_s
 
 
 def test_returned_arrays_are_the_callers() -> None:

@@ -21,7 +21,7 @@ GOOD = np.array([0, 0, 0, 0, 0, 0, 0, 0])
         ({"scenario": "nowhere"}, r"unknown scenario `nowhere`; available: jeffs2019/case1-1"),
         (
             {"distribution": "nothing"},
-            r"unknown distribution of episodes `nothing`; available: test-v0, train-v1",
+            r"unknown distribution of episodes `nothing`; available: test-v0, test-v1, train-v1",
         ),
         ({"scenario": "jeffs2019/case1-1", "distribution": "train-v1"}, "only one may be given"),
         ({"reward": "fame"}, "unknown reward `fame`; available: balanced"),

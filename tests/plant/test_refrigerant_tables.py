@@ -22,7 +22,7 @@ ENTROPY_J_KG_K = 0.05
 """20 J/kg over 400 K."""
 
 
-@pytest.mark.parametrize("name", ["R134a", "R1234yf"])
+@pytest.mark.parametrize("name", ["R134a", "R1234yf", "R290", "R152A"])
 def test_table_agrees_with_coolprop_between_nodes(name: str) -> None:
     table = RefrigerantTable(FOLDER / f"{name.lower()}.csv")
     state = dict(

@@ -1,4 +1,4 @@
-"""The Rust refrigeration loop against CoolProp and TESPy at 20 operating points."""
+"""The Rust refrigeration loop against CoolProp and TESPy at 20 points of each built-in refrigerant."""
 
 import shutil
 import sys
@@ -21,9 +21,9 @@ pytestmark = [
 ]
 
 
-@pytest.fixture(scope="module")
-def rust() -> Rust:
-    return check.rust_points()
+@pytest.fixture(scope="module", params=check.REFRIGERANTS)
+def rust(request: pytest.FixtureRequest) -> Rust:
+    return check.rust_points(request.param)
 
 
 def test_twenty_points_take_the_power_that_is_asked_for(

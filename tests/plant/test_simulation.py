@@ -163,10 +163,12 @@ def test_a_wrong_command_is_refused() -> None:
 
 
 def test_an_override_changes_the_result() -> None:
-    colder = hp_gym.simulate(SCENARIO, overrides={AMBIENT: -10})
+    # Soaked as the other; by itself a scenario starts at its ambient.
+    soak = "scenario.initial.soak_temperature_degc"
+    colder = hp_gym.simulate(SCENARIO, overrides={AMBIENT: -10, soak: 0})
     assert colder["ambient_temperature_degc"][0] == pytest.approx(-10.0)
     assert colder.summary["cabin_panel_energy_kwh"] > reference().summary["cabin_panel_energy_kwh"]
-    as_text = hp_gym.simulate(SCENARIO, overrides=[f"{AMBIENT}=-10"])
+    as_text = hp_gym.simulate(SCENARIO, overrides=[f"{AMBIENT}=-10", f"{soak}=0"])
     np.testing.assert_array_equal(as_text.values, colder.values)
 
 

@@ -158,3 +158,24 @@ def test_a_saved_table_knows_its_vehicle(tmp_path: Path) -> None:
     run = hp_gym.simulate("jeffs2019/case1-1", vehicle="jeffs2019-direct")
     run.save(tmp_path / "run.parquet")
     assert vehicle_layout.of_table(pd.read_parquet(tmp_path / "run.parquet")) == run.layout
+
+
+def test_an_unknown_column_says_what_is_near(trajectory: hp_gym.Trajectory) -> None:
+    with pytest.raises(KeyError, match="did you mean `cabin_temperature_degc`"):
+        trajectory["cabin_temperature_c"]
+
+
+def test_a_data_set_has_units_and_the_same_values(trajectory: hp_gym.Trajectory) -> None:
+    data = trajectory.to_xarray()
+    assert data["cabin_temperature_degc"].attrs["units"] == trajectory.units["cabin_temperature_degc"]
+    assert data.sizes == {"time_s": len(trajectory)}
+    assert data.attrs["energy_kwh"] == trajectory.summary["energy_kwh"]
+    for name in trajectory.columns:
+        np.testing.assert_array_equal(data[name].to_numpy(), trajectory[name])
+
+
+def test_a_notebook_shows_totals_and_picture(trajectory: hp_gym.Trajectory) -> None:
+    shown = trajectory._repr_html_()
+    assert "ours/thermal-battery with" in shown
+    assert f"{trajectory.summary['energy_kwh']:.6g}" in shown
+    assert "data:image/png;base64," in shown

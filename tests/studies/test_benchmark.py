@@ -335,6 +335,8 @@ def test_held_out_grid_shares_no_cycle_with_training_and_covers_every_band() -> 
         (('name = "garage"', 'name = "dark"'), ["minus5-nedc-dark", "2 times"]),
         (('shown = ["5-nedc-dark"]', 'shown = ["5-dark"]'), ["shown", "5-dark"]),
         (("ambient_temperatures_degc = [-5, 5, 30]", ""), ["ambient_temperatures_degc", "missing"]),
+        (("[-5, 5, 30]", "[-5, 5, 30]\nrelative_humidity = [[0, 1.2]]"), ["relative_humidity.0.1", "1.2"]),
+        (("[-5, 5, 30]", "[-5, 5, 30]\nrelative_humidity = [[9, 0.8], [5, 0.7]]"), ["humidity", "rise"]),
     ],
 )
 def test_a_mistake_in_a_grid_is_told_with_its_place(
@@ -345,6 +347,20 @@ def test_a_mistake_in_a_grid_is_told_with_its_place(
     with pytest.raises(GridError) as caught:
         grid.load(str(path))
     assert all(word in str(caught.value) for word in ["grid.toml", *words]), caught.value
+
+
+def test_humidity_of_a_trip_follows_its_ambient_temperature_and_its_variant(tmp_path: Path) -> None:
+    path = tmp_path / "grid.toml"
+    humid = "ambient_temperatures_degc = [-5, 5, 30]\nrelative_humidity = [[-5, 0.9], [15, 0.7]]"
+    text = GRID.replace("ambient_temperatures_degc = [-5, 5, 30]", humid)
+    path.write_text(
+        text.replace('name = "garage"', 'name = "garage"\nhumidity_offset = 0.15'), encoding="utf-8"
+    )
+    trips = {trip.name: trip.relative_humidity for trip in grid.load(str(path)).scenarios}
+    expected = {-5.0: 0.9, 5.0: 0.8, 30.0: 0.7}
+    for trip in grid.load(str(path)).scenarios:
+        offset = 0.15 if trip.variant.name == "garage" else 0.0
+        assert trips[trip.name] == pytest.approx(min(expected[trip.ambient_temperature_degc] + offset, 1.0))
 
 
 def test_front_settings_move_ambient_bands_too(tmp_path: Path) -> None:

@@ -52,7 +52,7 @@ class Renderer:
         now: Mapping[str, float],
         speeds_m_s: Sequence[float] | NDArray[np.float64],
         target_degc: float = 22.0,
-        battery_target_degc: float = 20.0,
+        battery_target_degc: float = math.nan,
         *,
         layout: Mapping[str, Any] | None = None,
     ) -> NDArray[np.uint8]:
@@ -62,7 +62,7 @@ class Renderer:
             now: Signals by name, such as `hp_gym.observe(run)` returns.
             speeds_m_s: The whole drive cycle, one speed a second.
             target_degc: Cabin temperature wanted.
-            battery_target_degc: Battery temperature wanted; the paper heats it up to 20 degC.
+            battery_target_degc: Battery temperature wanted, if any; the paper's rules heat it up to 20 degC.
             layout: What the vehicle is made of, as `Experiment.layout()` tells it; by default it is that of
                 the default architecture.
 

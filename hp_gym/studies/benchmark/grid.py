@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Final
 
+import numpy as np
 import tomlkit
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -15,7 +16,7 @@ from hp_gym.files import atomic_write
 from hp_gym.messages import FileError, OneLineError
 from hp_gym.pydantic_errors import one_line
 
-DEFAULT_GRID: Final = "heldout-v0"
+DEFAULT_GRID: Final = "heldout-v1"
 
 _CHECKED: Final = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 _Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9 ._-]+$")]
@@ -60,6 +61,8 @@ class Variant(BaseModel):
     solar_gain_w: Annotated[float, Field(ge=0.0)] = 0.0
     parked_in_sun_k: Annotated[float, Field(ge=0.0)] = 0.0
     """By how much the cabin is warmer than all else."""
+    humidity_offset: Annotated[float, Field(ge=-1.0, le=1.0)] = 0.0
+    """Added to the relative humidity that belongs to the ambient temperature."""
 
 
 class Front(BaseModel):
@@ -82,6 +85,8 @@ class GridFile(BaseModel):
     description: str
     scenario: str
     """Scenario that gives vehicle, strategy and heat requests."""
+    relative_humidity: tuple[tuple[float, Annotated[float, Field(ge=0.0, le=1.0)]], ...] = ()
+    """Ambient temperatures [degC], rising, and relative humidity at each; lines between. None: dry."""
     cycles: Annotated[tuple[Cycle, ...], Field(min_length=1)]
     ambient_temperatures_degc: Annotated[tuple[float, ...], Field(min_length=1)]
     variants: Annotated[tuple[Variant, ...], Field(min_length=1)]
@@ -99,6 +104,7 @@ class Scenario:
     base: str
     cycle: Cycle
     ambient_temperature_degc: float
+    relative_humidity: float
     band: Band
     variant: Variant
 
@@ -121,6 +127,7 @@ class Scenario:
                 "cycle": self.cycle.name,
                 "climate": {
                     "ambient_temperature_degc": ambient_degc,
+                    "relative_humidity": self.relative_humidity,
                     "solar_gain_w": variant.solar_gain_w,
                     "occupants": variant.occupants,
                 },
@@ -187,12 +194,16 @@ def parse(name: str, tables: Mapping[str, Any]) -> Grid:
     lows_degc = [band.low_degc for band in file.bands]
     if lows_degc != sorted(set(lows_degc)):
         raise GridError("`bands` must go from cold to warm")
+    humid_degc = [ambient_degc for ambient_degc, _ in file.relative_humidity]
+    if humid_degc != sorted(set(humid_degc)):
+        raise GridError("the temperatures of `relative_humidity` must rise")
     scenarios = tuple(
         Scenario(
             name=_file_name(cycle, ambient_degc, variant),
             base=file.scenario,
             cycle=cycle,
             ambient_temperature_degc=ambient_degc,
+            relative_humidity=_humidity(file.relative_humidity, ambient_degc, variant),
             band=_band(file.bands, ambient_degc),
             variant=variant,
         )
@@ -226,6 +237,15 @@ def _band(bands: Sequence[Band], ambient_degc: float) -> Band:
     if not fitting:
         raise GridError(f"no band holds an ambient temperature of {ambient_degc:g} degC")
     return fitting[-1]
+
+
+def _humidity(by_ambient: Sequence[tuple[float, float]], ambient_degc: float, variant: Variant) -> float:
+    """Relative humidity of a trip's outside air [-]; dry where the grid gives none."""
+    if not by_ambient:
+        return 0.0
+    at_degc, humidities = [point[0] for point in by_ambient], [point[1] for point in by_ambient]
+    humidity = float(np.interp(ambient_degc, at_degc, humidities)) + variant.humidity_offset
+    return round(min(max(humidity, 0.0), 1.0), 4)
 
 
 def _file_name(cycle: Cycle, ambient_degc: float, variant: Variant) -> str:

@@ -18,6 +18,7 @@ ARRIVED: Final = "arrived"
 # Taken as they are from the totals of a trip.
 _TOTALS: Final = (
     "duration_s",
+    "delay_s",
     "distance_km",
     "energy_kwh",
     "fan_energy_kwh",

@@ -20,7 +20,7 @@ IDENTITY: Final = (
 )
 """Columns of a run that say what it is; all others are KPIs.
 
-`seed` is -1 for controllers that have none. `end_reason` is `arrived`, `unserved_energy` or `battery_empty`.
+`seed` is -1 for controllers that have none. `end_reason` is `arrived`, `battery_empty`, `immobile` or `late`.
 """
 
 KPIS: Final = (
@@ -29,6 +29,7 @@ KPIS: Final = (
     "discomfort_k",
     "heat_left_kwh",
     "duration_s",
+    "delay_s",
     "distance_km",
     "energy_kwh",
     "chemical_energy_kwh",

@@ -24,7 +24,7 @@ def current_values(problem: Problem) -> dict[str, float]:
     """
     values = {}
     for parameter in problem.parameters:
-        kind, name, path = _address(problem, parameter.name, problem.targets[0].scenario)
+        kind, name, path = _address(problem, parameter.name, _scenarios(problem)[0])
         file, table = _owner(kind, name, path)
         value = _find(table, path)
         if isinstance(value, bool) or not isinstance(value, int | float):
@@ -49,7 +49,7 @@ def write_back(problem: Problem, values: Mapping[str, float]) -> list[Path]:
     configs = checkout() / "configs"
     documents: dict[Path, tomlkit.TOMLDocument] = {}
     for key, value in values.items():
-        scenarios = [target.scenario for target in problem.targets]
+        scenarios = _scenarios(problem)
         for scenario in scenarios if key.startswith("scenario.") else scenarios[:1]:
             kind, name, path = _address(problem, key, scenario)
             file, _ = _owner(kind, name, path)
@@ -76,6 +76,11 @@ def checkout() -> Path:
     if not (root / "configs" / "vehicles").is_dir() or not (root / "Cargo.toml").is_file():
         raise CalibrationError("values can only be written back in a checkout of the repository")
     return root
+
+
+def _scenarios(problem: Problem) -> list[str]:
+    targets = [target.scenario for target in problem.targets]
+    return targets + [one.scenario for one in problem.measurements]
 
 
 def _address(problem: Problem, key: str, scenario: str) -> tuple[str, str, list[str]]:

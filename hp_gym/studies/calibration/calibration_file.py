@@ -6,6 +6,8 @@ from typing import Annotated, Final, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from hp_gym.studies.calibration.measurements import MeasurementTable
+
 LOGARITHMIC_RATIO: Final = 10.0
 """A range that spans more than this is searched on a logarithmic scale."""
 
@@ -126,8 +128,9 @@ class CalibrationTable(BaseModel):
     description: str
     vehicle: _Name
     controller: _Name
-    energy_sigma_share: _Positive
-    final_soc_sigma_pct: _Positive
+    energy_sigma_share: _Positive | None = None
+    """Needed where there is a `[[target]]`, as the next one."""
+    final_soc_sigma_pct: _Positive | None = None
     prior_sigma_share: _Positive
     maximum_evaluations: Annotated[int, Field(ge=1, le=1_000_000_000)]
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
@@ -143,5 +146,17 @@ class CalibrationFile(BaseModel):
 
     calibration: CalibrationTable
     parameter: Annotated[tuple[ParameterTable, ...], Field(min_length=1)]
-    target: Annotated[tuple[TargetTable, ...], Field(min_length=1)]
+    target: tuple[TargetTable, ...] = ()
     soft_claim: tuple[ClaimTable, ...] = ()
+    measurement: tuple[MeasurementTable, ...] = ()
+
+    @model_validator(mode="after")
+    def _has_data(self) -> Self:
+        if not self.target and not any(one.role == "fit" for one in self.measurement):
+            message = "there is nothing to fit: needs a [[target]], or a [[measurement]] with the role `fit`"
+            raise ValueError(message)
+        for key in ("energy_sigma_share", "final_soc_sigma_pct"):
+            if self.target and getattr(self.calibration, key) is None:
+                message = f"`calibration.{key}` is missing"
+                raise ValueError(message)
+        return self

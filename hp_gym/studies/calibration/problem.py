@@ -2,14 +2,19 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from pathlib import Path
+from typing import Any, Final
 
 from pydantic import ValidationError
 
-from hp_gym import toml_files
+from hp_gym import _core, toml_files
 from hp_gym.messages import FileError, OneLineError
 from hp_gym.pydantic_errors import one_line
+from hp_gym.studies.calibration import measurements
 from hp_gym.studies.calibration.calibration_file import CalibrationFile, Parameter
+from hp_gym.studies.calibration.measurements import Measurement, MeasurementError
+
+_SIGMAS: Final = ("energy_sigma_share", "final_soc_sigma_pct")
 
 
 class CalibrationError(OneLineError):
@@ -44,6 +49,7 @@ class Problem:
         soft_claim_margin: Margin that the fit wants a soft claim to hold with, in units of its scale.
         subset_energy: Scenarios whose energy a fit to a subset sees.
         subset_final_soc: Scenarios whose final state of charge a fit to a subset sees.
+        measurements: Drives that were measured; a fit sees those with the role `fit`.
     """
 
     description: str
@@ -60,6 +66,7 @@ class Problem:
     soft_claim_margin: float = 0.0
     subset_energy: tuple[str, ...] = ()
     subset_final_soc: tuple[str, ...] = ()
+    measurements: tuple[Measurement, ...] = ()
 
     def without(self, scenario: str) -> "Problem":
         """The same with a scenario held out; soft claims compare scenarios, so they go too."""
@@ -67,6 +74,10 @@ class Problem:
             {target.scenario for target in self.targets} - {scenario},
             {target.scenario for target in self.targets} - {scenario},
         )
+
+    def without_measurement(self, name: str) -> "Problem":
+        """The same without a measurement."""
+        return replace(self, measurements=tuple(one for one in self.measurements if one.name != name))
 
     def subset(self) -> "Problem":
         """The same with only the subset seen.
@@ -101,18 +112,24 @@ def load(name: str) -> Problem:
         ConfigurationError: There is no such file.
     """
     try:
-        return parse(toml_files.load("calibration", name))
+        folder = Path(name).parent if name not in _core.names("calibration") else Path()
+        return parse(toml_files.load("calibration", name), folder)
     except FileError as error:
         raise CalibrationError(str(error)) from error
-    except CalibrationError as error:
+    except (CalibrationError, MeasurementError) as error:
         raise CalibrationError(f"{name}: {error}") from error
 
 
-def parse(tables: Mapping[str, Any]) -> Problem:
+def parse(tables: Mapping[str, Any], folder: Path = Path()) -> Problem:
     """Makes a calibration of the tables of its file.
+
+    Args:
+        tables: What the file says.
+        folder: From where paths of measurements count.
 
     Raises:
         CalibrationError: A key is missing or unknown, or a value is of the wrong kind or out of range.
+        MeasurementError: A measurement does not fit its scenario.
     """
     try:
         file = CalibrationFile.model_validate(tables)
@@ -123,11 +140,15 @@ def parse(tables: Mapping[str, Any]) -> Problem:
     _once("key", (key for parameter in parameters for key in parameter.keys))
     _once("target", (target.scenario for target in targets))
     _once("soft_claim", (str(table.id) for table in file.soft_claim))
+    _once("measurement", (table.name for table in file.measurement))
+    settings = file.calibration
     return Problem(
         parameters=parameters,
         targets=targets,
         soft_claims={table.id: table.weight for table in file.soft_claim},
-        **file.calibration.model_dump(),
+        measurements=measurements.load(file.measurement, folder, settings.vehicle, settings.controller),
+        # Of a file without targets: nothing is divided by them.
+        **(settings.model_dump() | {key: getattr(settings, key) or 1.0 for key in _SIGMAS}),
     )
 
 

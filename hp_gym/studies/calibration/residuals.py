@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from hp_gym import _core
 from hp_gym.studies.calibration.calibration_file import Parameter
+from hp_gym.studies.calibration.measurements import Driven
 from hp_gym.studies.calibration.problem import CalibrationError, Problem
 from hp_gym.studies.reproduction.claims import CLAIMS, by_label
 from hp_gym.studies.reproduction.paper import LABELS
@@ -45,7 +46,9 @@ class Residuals:
         self._scenarios = [target.scenario for target in problem.targets]
         self._prior = np.array([p.to_share(p.prior) for p in problem.parameters])
         weights = np.array([p.prior_weight for p in problem.parameters])
-        self._prior_scale = np.sqrt(weights) / problem.prior_sigma_share
+        self.prior_scale = np.sqrt(weights) / problem.prior_sigma_share
+        fitted = [one for one in problem.measurements if one.role == "fit"]
+        self._driven = Driven(fitted, problem.vehicle, problem.controller)
         self._claims = [claim for claim in CLAIMS if claim.id in problem.soft_claims]
         if len(self._claims) < len(problem.soft_claims):
             raise CalibrationError(f"a [[soft_claim]] has an id that is not one of 1 to {len(CLAIMS)}")
@@ -67,6 +70,8 @@ class Residuals:
 
     def totals(self, values: Sequence[float]) -> dict[str, Totals]:
         """Totals of every scenario."""
+        if not self._scenarios:
+            return {}
         results = _core.totals(self._scenarios, overrides(self.problem.parameters, values))
         return {
             scenario: Totals(summary["energy_kwh"], summary["final_soc_pct"], end == "arrived")
@@ -74,7 +79,7 @@ class Residuals:
         }
 
     def __call__(self, shares: NDArray[np.float64]) -> NDArray[np.float64]:
-        """All residuals: targets, soft claims, priors."""
+        """All residuals: targets, soft claims, measurements, and priors, one a parameter, last."""
         self.evaluations += 1
         values = self.values(shares)
         if self._claims:
@@ -93,8 +98,14 @@ class Residuals:
             ]
         else:
             totals, claims = self.totals(values), []
-        priors = self._prior_scale * (shares - self._prior)
-        return np.concatenate([self._targets(totals), claims, priors])
+        priors = self.prior_scale * (shares - self._prior)
+        return np.concatenate([self._targets(totals), claims, *self._measured(values), priors])
+
+    def _measured(self, values: Sequence[float]) -> list[NDArray[np.float64]]:
+        if not self._driven.measurements:
+            return []
+        found = self._driven.deviations(overrides(self.problem.parameters, values))
+        return [deviation for one in found.values() for deviation in one.values()]
 
     def _targets(self, totals: Mapping[str, Totals]) -> list[float]:
         residuals = []

@@ -7,6 +7,7 @@ mod errors;
 mod experiment;
 mod kinds;
 mod scalars;
+mod sweep;
 mod vector;
 mod vehicles;
 
@@ -52,6 +53,8 @@ mod _core {
     #[pymodule_export]
     use super::experiment::{Experiment, Run, plant_step_seconds, totals};
     use super::kinds::{BENCHMARK, CALIBRATION, TRAINING};
+    #[pymodule_export]
+    use super::sweep::summaries_of;
     #[pymodule_export]
     use super::vector::{FinishedTrip, Outcomes, Vector};
     #[pymodule_export]

@@ -278,9 +278,13 @@ impl Named<'_> {
             "exhaust_recovery": cabin.recovery.map(|circuit| &self.0.loops[circuit].name),
             "blower_power": self.flow(cabin.blower_flow),
             "solar": self.flow(cabin.solar_flow),
+            "solar_soft_furnishings": self.flow(cabin.solar_soft_flow),
+            "solar_hard_furnishings": self.flow(cabin.solar_hard_flow),
             "occupants": self.flow(cabin.occupants_flow),
+            "latent": cabin.latent_flow.map(|flow| self.flow(flow)),
             "recirculation_actuator": self.actuator(Some(cabin.recirculation_row)),
             "blower_actuator": self.actuator(Some(cabin.blower_row)),
+            "windscreen_actuator": self.actuator(Some(cabin.windscreen_row)),
         })
     }
 }

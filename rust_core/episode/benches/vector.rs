@@ -78,8 +78,8 @@ fn parts(criterion: &mut Criterion) {
     let disturbance = experiment.disturbance(run.steps);
     criterion.bench_function("second of the reference trip", |bencher| {
         bencher.iter(|| {
-            let mut trip = ReferenceTrip::start(run.state.battery);
-            black_box(trip.step(&experiment.plant, &conditions, black_box(&disturbance)))
+            let mut trip = ReferenceTrip::start(experiment, run.state.battery);
+            black_box(trip.step(black_box(experiment), &conditions))
         });
     });
     let command = driven.vector.episodes_mut()[0].rule_based_command().expect("begun");

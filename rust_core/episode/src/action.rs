@@ -535,7 +535,7 @@ impl Asked<'_> {
             at(0.0) || at(self.effective(cabin, 1.0, 1.0))
         } else {
             let cooling = !layout.branches[branch].out_of_loop;
-            let blower = self.defaults.command().0[cabin_rows.blower_row];
+            let blower = self.defaults.blower(cabin, cooling);
             at(self.effective(cabin, blower, self.defaults.recirculation(cabin, cooling)))
         }
     }

@@ -37,16 +37,19 @@ impl Ask {
 /// Most options that ask for air conditioning: the cooling core of each cabin, and evaporators.
 const ASKS: usize = CABIN_PLACES + EXCHANGER_PLACES;
 
-/// Recirculation of a cabin, which follows what is asked for it.
+/// Recirculation and blower of a cabin, which follow what is asked for it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct CabinDefaults {
     recirculation_row: u8,
+    blower_row: u8,
     /// Its first option among those that ask for air conditioning, and how many there are: the connection of its cooling core,
     /// valves of its evaporators.
     first: u8,
     count: u8,
     heating_recirculation: f32,
     cooling_recirculation: f32,
+    heating_blower: f32,
+    cooling_blower: f32,
     /// What of them is recirculated with the occupants that a trip has, while it is heated and cooled.
     effective: [f64; 2],
 }
@@ -63,7 +66,7 @@ struct Rejection {
 ///
 /// Flows, blower, set point and requested heat flows are those of scenario and controller. Two kinds of rows follow what
 /// the agent asks for: while it asks to cool a cabin (cooling core connected, or a valve of one of its evaporators open), that
-/// cabin's air is recirculated as in air conditioning, and with a front-end exchanger on a hot loop its request is unlimited.
+/// cabin's air is recirculated and blown as in air conditioning, and with a front-end exchanger on a hot loop its request is unlimited.
 /// All of it but requests of schedules stands in place: to follow pointers took longer than the rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Defaults {
@@ -92,18 +95,22 @@ impl Defaults {
             let own = cooling(layout, place);
             asks[asked..asked + own.len()].copy_from_slice(&own);
             let normalised = |share: f64| ranges.normalise(cabin.recirculation_row, share);
-            let blower = command.0[cabin.blower_row];
-            let share_of = |share: f64| {
+            let blower = |mode: CabinMode| ranges.normalise(cabin.blower_row, settings.blower_level(mode));
+            let share_in = |mode: CabinMode| {
                 let occupants = experiment.disturbance(0).occupants;
-                effective_recirculation(&experiment.plant, occupants, place, blower, normalised(share))
+                let share = normalised(settings.recirculation(mode));
+                effective_recirculation(&experiment.plant, occupants, place, blower(mode), share)
             };
             cabins[place] = CabinDefaults {
                 recirculation_row: cabin.recirculation_row as u8,
+                blower_row: cabin.blower_row as u8,
                 first: asked as u8,
                 count: own.len() as u8,
                 heating_recirculation: normalised(settings.heating_recirculation),
                 cooling_recirculation: normalised(settings.cooling_recirculation),
-                effective: [settings.heating_recirculation, settings.cooling_recirculation].map(share_of),
+                heating_blower: blower(CabinMode::Heating),
+                cooling_blower: blower(CabinMode::Cooling),
+                effective: [CabinMode::Heating, CabinMode::Cooling].map(share_in),
             };
             asked += own.len();
         }
@@ -145,6 +152,13 @@ impl Defaults {
         if cooling { cabin.cooling_recirculation } else { cabin.heating_recirculation }
     }
 
+    /// Normalised blower level of a cabin while it is cooled or not.
+    #[must_use]
+    pub fn blower(&self, cabin: usize, cooling: bool) -> f32 {
+        let cabin = &self.cabins[cabin];
+        if cooling { cabin.cooling_blower } else { cabin.heating_blower }
+    }
+
     /// Share of a cabin's air that is recirculated while it is cooled or not, fresh air for its occupants held back.
     #[must_use]
     #[inline]
@@ -184,12 +198,18 @@ impl Defaults {
         }
         actions.enter(values, command);
         for cabin in self.cabins.iter().take(usize::from(self.cabin_count)) {
-            let row = usize::from(cabin.recirculation_row);
+            let (row, blower_row) = (usize::from(cabin.recirculation_row), usize::from(cabin.blower_row));
+            if actions.selects(row) && actions.selects(blower_row) {
+                continue;
+            }
+            let own = self.asks.iter().skip(usize::from(cabin.first)).take(usize::from(cabin.count));
+            let cooling = own.fold(false, |cooling, ask| cooling | ask.is_in(command));
             if !actions.selects(row) {
-                let own = self.asks.iter().skip(usize::from(cabin.first)).take(usize::from(cabin.count));
-                let cooling = own.fold(false, |cooling, ask| cooling | ask.is_in(command));
-                let share = if cooling { cabin.cooling_recirculation } else { cabin.heating_recirculation };
-                command.0[row] = share;
+                command.0[row] =
+                    if cooling { cabin.cooling_recirculation } else { cabin.heating_recirculation };
+            }
+            if !actions.selects(blower_row) {
+                command.0[blower_row] = if cooling { cabin.cooling_blower } else { cabin.heating_blower };
             }
         }
         for rejection in self.rejections.iter().take(usize::from(self.rejection_count)) {

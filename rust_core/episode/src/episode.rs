@@ -135,7 +135,7 @@ impl Current {
         let off: Vec<f32> =
             (0..setup.actions.rows().len()).map(|column| setup.actions.value(column, 0)).collect();
         let progress = Progress {
-            meter: Meter::start(&run.state),
+            meter: Meter::start(&experiment, &run.state),
             asked: defaults.complete(&car.actions, &off, &experiment, 0.0),
             run,
             ruled: None,
@@ -268,6 +268,7 @@ impl Episode {
             experiment,
             asked: &progress.asked,
             steps: progress.run.steps,
+            behind_m: progress.run.pace.behind_m,
         };
         let strength = self.setup.sensor_noise;
         let noise = &mut self.noise;
@@ -295,7 +296,7 @@ impl Episode {
             return;
         };
         let Current { experiment, car, progress, defaults, .. } = current;
-        let disturbance = experiment.disturbance(progress.run.steps);
+        let disturbance = experiment.next_disturbance(progress.run.steps, &progress.run.pace);
         let (table, state) = (&self.setup.actions, &progress.run.state);
         car.actions.write_mask(table, &experiment.plant, state, &disturbance, defaults, mask);
     }

@@ -141,6 +141,7 @@ impl Garage {
             rules: if rules == *origin.rules { Arc::clone(&origin.rules) } else { Arc::new(rules) },
             scenario: Arc::clone(&origin.scenario),
             air: trip.climate.air(),
+            ambient_humidity_ratio: trip.climate.humidity_ratio(),
             climate: trip.climate,
             initial: trip.initial,
             plant: Arc::clone(&origin.plant),

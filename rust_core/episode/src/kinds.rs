@@ -13,8 +13,8 @@ pub const EPISODES: Kind = Kind {
     ending: "toml",
     files: embedded::EPISODES,
     references: &[
-        Reference { path: &["scenario"], kind: &SCENARIO },
-        Reference { path: &["cycles", EACH, "name"], kind: &CYCLE },
+        Reference { path: &["scenario"], kind: &SCENARIO, brings: &[] },
+        Reference { path: &["cycles", EACH, "name"], kind: &CYCLE, brings: &[] },
     ],
 };
 

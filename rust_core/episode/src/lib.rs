@@ -19,6 +19,7 @@ pub mod rows;
 pub mod scenario_sampler;
 pub mod setup;
 pub mod snapshot;
+pub mod summaries;
 pub mod threads;
 pub mod timing;
 pub mod totals;

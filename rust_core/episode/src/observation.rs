@@ -42,6 +42,7 @@ enum Source {
     Asked(usize),
     SpeedAhead(usize),
     TimeLeft,
+    Behind,
 }
 
 /// Group of the rows seen by default, those of the previous action included.
@@ -55,6 +56,9 @@ const PREVIEW_S: [usize; 6] = [2, 5, 10, 20, 40, 80];
 
 /// Longest time left that is told apart [s].
 const LONGEST_TIME_LEFT_S: f64 = 7200.0;
+
+/// Largest distance behind the cycle that is told apart [m].
+const FURTHEST_BEHIND_M: f64 = 2000.0;
 
 fn row(name: impl Into<String>, unit: &'static str, bounds: (f64, f64), source: Source) -> Observed {
     let name = name.into();
@@ -89,6 +93,8 @@ pub struct Look<'a> {
     pub asked: &'a Command,
     /// Seconds driven.
     pub steps: usize,
+    /// Distance that the vehicle is behind its cycle [m].
+    pub behind_m: f64,
 }
 
 /// Every row there is, for an agent with these actions: signals that are seen by default in their order, surroundings,
@@ -119,7 +125,9 @@ pub fn all(set: &RowSet, actions: &ActionTable) -> Vec<Observed> {
         rows.push(preview.meaning("speed on the cycle ahead").hidden());
     }
     let left = row("time_left_s", "s", (0.0, LONGEST_TIME_LEFT_S), Source::TimeLeft);
-    rows.push(left.meaning("time to arrival").hidden());
+    rows.push(left.meaning("time to the end of the cycle").hidden());
+    let behind = row("distance_behind_m", "m", (0.0, FURTHEST_BEHIND_M), Source::Behind);
+    rows.push(behind.meaning("distance that the vehicle is behind its cycle").hidden());
     rows.extend(set.signals.iter().filter(|row| row.default.is_none()).map(|row| signal(row).hidden()));
     rows
 }
@@ -376,6 +384,7 @@ pub struct FittedObservations {
     solar: Option<usize>,
     occupants: Option<usize>,
     time_left: Option<usize>,
+    behind: Option<usize>,
     /// Whether each row is blurred by noise.
     measured: Vec<bool>,
 }
@@ -412,6 +421,7 @@ impl FittedObservations {
                 },
                 Source::SpeedAhead(seconds) => places.speeds_ahead.push(entry(place, seconds)),
                 Source::TimeLeft => places.time_left = Some(place),
+                Source::Behind => places.behind = Some(place),
             }
         }
         places.actions = Some(actions.clone()).filter(|_| !places.translated.is_empty());
@@ -448,6 +458,9 @@ impl FittedObservations {
         }
         if let Some(place) = self.time_left {
             values[place] = cycle.duration_s().saturating_sub(look.steps) as f64;
+        }
+        if let Some(place) = self.behind {
+            values[place] = look.behind_m;
         }
     }
 }
@@ -517,7 +530,13 @@ mod tests {
                 record: run.record.as_ref(),
                 disturbance: &disturbance,
             };
-            let look = Look { view, experiment: &experiment, asked: &asked, steps: run.steps };
+            let look = Look {
+                view,
+                experiment: &experiment,
+                asked: &asked,
+                steps: run.steps,
+                behind_m: run.pace.behind_m,
+            };
             let mut shown = vec![0.0; table.rows().len()];
             table.write(&fitted, &look, None::<fn() -> f64>, &mut shown, &mut Clipped::default());
             signals.clear();
@@ -554,7 +573,7 @@ mod tests {
         let disturbance = experiment.disturbance(0);
         let view =
             View { plant: &experiment.plant, state: &run.state, record: None, disturbance: &disturbance };
-        let look = Look { view, experiment: &experiment, asked: &Command([0.5; _]), steps: 0 };
+        let look = Look { view, experiment: &experiment, asked: &Command([0.5; _]), steps: 0, behind_m: 0.0 };
         let mut shown = vec![9.0; table.rows().len()];
         table.write(&fitted, &look, Some(|| 1.0), &mut shown, &mut Clipped::default());
         let lacking = |row: &&(&Observed, f32)| {

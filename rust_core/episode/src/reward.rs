@@ -13,7 +13,7 @@ use hp_plant::plant::{CONTROL_PERIOD_S, Disturbance, Plant};
 use hp_plant::state::State;
 use hp_trip::experiment::Experiment;
 use hp_trip::run::{EndReason, Run};
-use hp_trip::summary::COMFORT_TEMPERATURE_DEGC;
+use hp_trip::summary::{CO2_LIMIT_PPM, COMFORT_TEMPERATURE_DEGC};
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
@@ -33,6 +33,8 @@ struct Second<'a> {
     chemical_w: f64,
     reference_j: f64,
     occupied: bool,
+    /// Beyond the end of the cycle.
+    late: bool,
     end: Option<EndReason>,
 }
 
@@ -45,14 +47,14 @@ macro_rules! terms {
             $(adds |$second:ident| $added:expr;)?
             $(tells $kpi:literal |$told:ident| $value:expr;)?
             $(costs $part:literal |$terms:ident, $weights:ident| $points:expr;
-                $(#[doc = $weight_doc:literal])* $weight:ident in $low:literal .. $high:literal;)?
+                $(#[$weight_meta:meta])* $weight:ident in $low:literal .. $high:literal;)?
     )*) => {
         terms! { @fields $( $( #[doc = $doc] #[doc = concat!(" [", $unit, "].")] $name |$second| $added; )? )* }
 
         parameters! {
             /// Weights of the terms, in points.
             pub struct RewardParameters {
-                $($( $(#[doc = $weight_doc])* $weight: f64 = $low .. $high, )?)*
+                $($( $(#[$weight_meta])* $weight: f64 = $low .. $high, )?)*
                 /// Lower end of the battery's window [degC].
                 battery_window_low_degc: Celsius = -50.0 .. 60.0,
                 /// Upper end of the battery's window [degC].
@@ -158,6 +160,30 @@ terms! {
         costs "reward_penalties" |t, w| -w.battery_window_per_k_h * t.battery_window_k_h;
         /// For an hour of 1 K between the battery and its window.
         battery_window_per_k_h in 0.0 .. 1000.0;
+    /// Dew point of the cabin air above the windscreen's temperature while occupied, integrated
+    fog_k_h ["K h"]
+        adds |s| if s.occupied { (-s.state.cabin_air[0].fog_margin_k()).max(0.0) * HOURS } else { 0.0 };
+        tells "fog_k_h" |t| t.fog_k_h;
+        costs "reward_penalties" |t, w| -w.fog_per_k_h * t.fog_k_h;
+        /// For an hour of fog 1 K deep on the windscreen.
+        #[serde(default)]
+        fog_per_k_h in 0.0 .. 1000.0;
+    /// Time with fog on the windscreen while occupied
+    fog_h ["h"]
+        adds |s| if s.occupied && s.state.cabin_air[0].fog_margin_k() < 0.0 { HOURS } else { 0.0 };
+        tells "fog_s" |t| t.fog_h * SECONDS_PER_HOUR;
+        costs "reward_penalties" |t, w| -w.fog_per_h * t.fog_h;
+        /// For an hour of any fog on the windscreen.
+        #[serde(default)]
+        fog_per_h in 0.0 .. 10000.0;
+    /// Carbon dioxide of the cabin air above 1000 ppm while occupied, integrated
+    bad_air_ppm_h ["ppm h"]
+        adds |s| if s.occupied { (s.state.cabin_air[0].co2 * 1e6 - CO2_LIMIT_PPM).max(0.0) * HOURS } else { 0.0 };
+        tells "bad_air_ppm_h" |t| t.bad_air_ppm_h;
+        costs "reward_penalties" |t, w| -w.bad_air_per_ppm_h * t.bad_air_ppm_h;
+        /// For an hour of 1 ppm of carbon dioxide above 1000.
+        #[serde(default)]
+        bad_air_per_ppm_h in 0.0 .. 10.0;
     /// Stops of the compressor that a protection forced
     protection_trips ["-"]
         adds |s| f64::from(s.state.refrigeration.compressor.protection_trips - s.before.trips);
@@ -165,6 +191,13 @@ terms! {
         costs "reward_penalties" |t, w| -w.protection_trip * t.protection_trips;
         /// For each stop of the compressor that a protection forces.
         protection_trip in 0.0 .. 1000.0;
+    /// Time beyond the end of the cycle
+    delay_h ["h"]
+        adds |s| if s.late { HOURS } else { 0.0 };
+        tells "delay_s" |t| (t.delay_h * SECONDS_PER_HOUR).round();
+        costs "reward_penalties" |t, w| -w.delay_per_h * t.delay_h;
+        /// For an hour beyond the end of the cycle. More than what slower driving saves, or a weak battery would pay.
+        delay_per_h in 0.0 .. 1000000.0;
     /// 1 if the trip ended before arrival
     stranded ["-"]
         adds |s| f64::from(u8::from(s.end.is_some_and(|reason| reason != EndReason::Arrived)));
@@ -268,10 +301,10 @@ pub struct Meter {
 impl Meter {
     /// Before the first second.
     #[must_use]
-    pub fn start(state: &State) -> Self {
+    pub fn start(experiment: &Experiment, state: &State) -> Self {
         Self {
             total: Terms::default(),
-            reference: ReferenceTrip::start(state.battery),
+            reference: ReferenceTrip::start(experiment, state.battery),
             trips: state.refrigeration.compressor.protection_trips,
         }
     }
@@ -286,7 +319,10 @@ impl Meter {
         disturbance: &Disturbance,
         end: Option<EndReason>,
     ) -> Terms {
-        let reference_j = self.reference.step(&experiment.plant, conditions, disturbance);
+        let mut reference_j = self.reference.step(experiment, conditions);
+        if end == Some(EndReason::Arrived) && !self.reference.arrived(experiment) {
+            reference_j += self.reference.finish(experiment, conditions);
+        }
         let added = Terms::of(&Second {
             experiment,
             weights,
@@ -295,6 +331,7 @@ impl Meter {
             chemical_w: run.record.as_ref().map_or(0.0, |record| record.flows[Flow::CHEMICAL]),
             reference_j,
             occupied: disturbance.occupants > 0.0,
+            late: run.steps > experiment.cycle.duration_s(),
             end,
         });
         self.trips = run.state.refrigeration.compressor.protection_trips;
@@ -364,11 +401,16 @@ mod tests {
             PART_NAMES,
             ["reward_energy", "reward_discomfort", "reward_heat_left", "reward_penalties"]
         );
-        let terms =
-            Terms { stranded: 1.0, protection_trips: 2.0, chemical_energy_kwh: 3.0, ..Terms::default() };
+        let terms = Terms {
+            stranded: 1.0,
+            delay_h: 0.1,
+            protection_trips: 2.0,
+            chemical_energy_kwh: 3.0,
+            ..Terms::default()
+        };
         let weights: RewardParameters =
             hp_plant::config::library::load(crate::kinds::REWARD, "durable", &[]).expect("built in");
-        let expected = -weights.protection_trip * 2.0 - weights.stranded;
+        let expected = -weights.protection_trip * 2.0 - weights.delay_per_h * 0.1 - weights.stranded;
         assert_eq!(terms.reward(&weights), [-weights.energy_per_kwh * 3.0, 0.0, 0.0, expected]);
         let names: Vec<&str> = terms.kpis(&weights).into_iter().map(|(name, _)| name).collect();
         assert_eq!(
@@ -381,7 +423,11 @@ mod tests {
                 "discomfort_k",
                 "heat_left_kwh",
                 "battery_window_k_h",
-                "protection_trips"
+                "fog_k_h",
+                "fog_s",
+                "bad_air_ppm_h",
+                "protection_trips",
+                "delay_s"
             ]
         );
     }

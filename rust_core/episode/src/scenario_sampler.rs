@@ -9,6 +9,7 @@ use hp_plant::config::initial::MEMBER_RANGE_DEGC;
 use hp_plant::config::library;
 use hp_plant::config::{Celsius, Validate, Violation, check_range};
 use hp_plant::error::{PlantError, PlantResult};
+use hp_plant::media::moist_air;
 use hp_plant::parameters;
 use hp_trip::experiment::Experiment;
 use serde::{Deserialize, Serialize};
@@ -77,6 +78,12 @@ parameters! {
         plugged_in_low_degc: Celsius = -40.0 .. 50.0,
         /// Hottest temperature that is kept [degC].
         plugged_in_high_degc: Celsius = -40.0 .. 50.0,
+        /// Lowest relative humidity of ambient air [-]; dry where the file does not say.
+        #[serde(default)]
+        relative_humidity_low: f64 = 0.0 .. 1.0,
+        /// Highest relative humidity of ambient air [-].
+        #[serde(default)]
+        relative_humidity_high: f64 = 0.0 .. 1.0,
     }
 }
 
@@ -98,6 +105,7 @@ impl Validate for DistributionParameters {
             ("ranges.garage_low_degc", ranges.garage_low_degc.0, ranges.garage_high_degc.0),
             ("ranges.plugged_in_low_degc", ranges.plugged_in_low_degc.0, ranges.plugged_in_high_degc.0),
             ("ranges.charge_low_pct", ranges.charge_low_pct, ranges.charge_high_pct),
+            ("ranges.relative_humidity_low", ranges.relative_humidity_low, ranges.relative_humidity_high),
         ] {
             check_range(key, low, f64::NEG_INFINITY, high)?;
         }
@@ -134,6 +142,15 @@ const SUNLESS_DEGC: f64 = -20.0;
 fn season(ranges: &SampledRanges, ambient_degc: f64) -> f64 {
     let span_k = ranges.ambient_high_degc.0 - SUNLESS_DEGC;
     if span_k > 0.0 { ((ambient_degc - SUNLESS_DEGC) / span_k).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+/// Dew point that summers hardly exceed: sultry air [degC] (assumed).
+const HIGHEST_DEW_POINT: Celsius = Celsius(22.0);
+
+/// Relative humidity of air of that dew point [-].
+fn sultry(ambient_degc: f64) -> f64 {
+    let ratio = moist_air::saturation_ratio(HIGHEST_DEW_POINT.kelvin());
+    moist_air::relative_humidity(ratio, Celsius(ambient_degc).kelvin())
 }
 
 /// Name of the member that is the battery.
@@ -211,6 +228,13 @@ impl Distribution {
         {
             initial.set(battery_name(layout), Some(Celsius(kept_degc)));
         }
+        // Last, and drawn only where there is some, so that the trips of a file without humidity stay what they were.
+        climate.relative_humidity = if ranges.relative_humidity_high > 0.0 {
+            let drawn = random.between(ranges.relative_humidity_low, ranges.relative_humidity_high);
+            drawn.min(sultry(ambient_degc))
+        } else {
+            0.0
+        };
         Trip {
             origin: Arc::clone(&self.origin),
             vehicle: self.vehicle.clone(),
@@ -313,6 +337,22 @@ mod tests {
         lengths.sort_unstable();
         lengths.dedup();
         assert!(lengths.len() > 50 && lengths[0] >= 300, "{} lengths from {} s", lengths.len(), lengths[0]);
+    }
+
+    #[test]
+    fn trips_are_dry_or_as_humid_as_their_file_says_and_never_beyond_sultry() {
+        assert!(drawn("train-v1").iter().all(|trip| trip.climate.relative_humidity == 0.0));
+        let trips = drawn("train-v2");
+        let humidity = |trip: &Trip| trip.climate.relative_humidity;
+        assert!(trips.iter().all(|trip| humidity(trip) <= 0.95 && humidity(trip) > 0.1));
+        assert!(trips.iter().any(|trip| humidity(trip) > 0.9));
+        for trip in &trips {
+            let ratio = trip.climate.humidity_ratio();
+            assert!(moist_air::dew_point_k(ratio) <= HIGHEST_DEW_POINT.kelvin() + 1e-6, "{trip:?}");
+        }
+        // The same trips but for their humidity.
+        let dry = drawn("train-v1");
+        assert_eq!(dry[0].climate.ambient_temperature_degc, trips[0].climate.ambient_temperature_degc);
     }
 
     #[test]

@@ -109,7 +109,7 @@ fn range(vehicle: &VehicleParameters, row: &ActuatorRow) -> (f64, f64) {
             (refrigeration.compressor.minimum_power_w, refrigeration.compressor.maximum_power_w)
         }),
         Purpose::Recirculation(cabin) => (0.0, vehicle.cabins[cabin].parameters.maximum_recirculation),
-        Purpose::Blower(_) | Purpose::Valve(_) => (0.0, 1.0),
+        Purpose::Blower(_) | Purpose::Windscreen(_) | Purpose::Valve(_) => (0.0, 1.0),
         Purpose::LoopFlow(circuit) => {
             let pump = &vehicle.loops[circuit].circuit.pump;
             (pump.minimum_flow_kg_s, pump.maximum_flow_kg_s)

@@ -1,14 +1,17 @@
 //! The plant's own controls, once a control period: connections, pumps, switches, heaters, condensing pressure.
 
+use crate::air_side;
 use crate::architecture::indices::Indices;
 use crate::architecture::layout::{
     BRANCH_PLACES, CABIN_PLACES, FRONT_END_PLACES, HEATER_PLACES, LOOP_PLACES,
 };
 use crate::circuits::branches::{BranchFlows, BranchTable, BranchTemperatures, BranchValues, differences_k};
+use crate::circuits::front_ends::{self, Asked, FrontAirs};
 use crate::command::Demand;
 use crate::components::cabin::Ventilation;
 use crate::components::pid::ResetGains;
 use crate::components::pump;
+use crate::components::wet_core::WetSurface;
 use crate::config::vehicle::VehicleParameters;
 use crate::network::shape::{Shape, each};
 use crate::state::State;
@@ -24,7 +27,10 @@ pub(crate) struct Period {
     pub demand: Demand,
     pub ventilation: [Ventilation; CABIN_PLACES],
     pub core_inlet_k: [f64; CABIN_PLACES],
+    /// Cooling cores on which water condenses.
+    pub wet_cores: [Option<WetSurface>; CABIN_PLACES],
     pub front_end_air_k: [f64; FRONT_END_PLACES],
+    pub front: FrontAirs,
     pub branches_w_k: BranchValues,
     pub rates_w_k: [f64; LOOP_PLACES],
     pub pumps_w: [f64; LOOP_PLACES],
@@ -40,7 +46,9 @@ impl Period {
             demand,
             ventilation: [Ventilation::default(); CABIN_PLACES],
             core_inlet_k: [0.0; CABIN_PLACES],
+            wet_cores: [None; CABIN_PLACES],
             front_end_air_k: [0.0; FRONT_END_PLACES],
+            front: FrontAirs::default(),
             branches_w_k: [0.0; BRANCH_PLACES],
             rates_w_k: [0.0; LOOP_PLACES],
             pumps_w: [0.0; LOOP_PLACES],
@@ -86,13 +94,14 @@ impl Controls {
     ) {
         enter_air::<S>(sight, state, period);
         enter_front_end_air::<S>(sight, state, period);
+        self.demand_compression(sight, state, period);
         self.connect::<S>(sight, branches, state, period);
         keep_cores_free_of_ice::<S>(sight, state, period);
+        air_side::wet_cores::<S>(sight, state, period);
         self.demand_heat::<S>(sight, state, period);
-        self.demand_compression(sight, state, period);
     }
 
-    /// Grants connections, moves pumps and switches.
+    /// Grants connections, moves pumps, fans and switches.
     #[inline(always)]
     fn connect<S: Shape>(
         &self,
@@ -113,15 +122,26 @@ impl Controls {
             period.rates_w_k[circuit] = state.flow_kg_s * parameters.specific_heats_j_kg_k[circuit];
             period.pumps_w[circuit] = pump.power_w(state.flow_kg_s);
         });
-        let flows = BranchFlows {
-            rates_w_k: period.rates_w_k,
-            ventilation: period.ventilation,
-            speed_m_s: disturbance.mean_speed_m_s(),
-        };
-        let largest_w_k =
-            branches.largest_conductances_w_k::<S>(shape, &period.demand, &flows, &state.connected);
+        let flows = BranchFlows { rates_w_k: period.rates_w_k, ventilation: period.ventilation };
         let mut requests_w = [0.0; BRANCH_PLACES];
         each!(S::branches(shape) => |i, branch| { requests_w[i] = period.demand.0[usize::from(branch.request_row)]; });
+        let coolant_w_k = branches.coolant_rates_w_k::<S>(shape, &period.demand, &flows, &state.connected);
+        let asked = Asked {
+            demand: &period.demand,
+            connected: &state.connected,
+            requests_w: &requests_w,
+            differences_k: &differences_k,
+            coolant_w_k: &coolant_w_k,
+            compressor_w: period.compressor_demand_w,
+        };
+        period.front = front_ends::blow::<S>(shape, parameters, disturbance, &state.frosts, &asked);
+        let largest_w_k = branches.largest_conductances_w_k::<S>(
+            shape,
+            &flows,
+            &period.front,
+            &state.connected,
+            &coolant_w_k,
+        );
         let places = shape.branch_places().min(BRANCH_PLACES);
         let gains = &vehicle.controls.thermal_switch.pid;
         let positions =
@@ -178,16 +198,16 @@ fn enter_air<S: Shape>(sight: Sight<'_>, state: &State, period: &mut Period) {
     });
 }
 
-/// Air at each front-end exchanger: ambient, warmed or cooled by the exchangers before it in the last second.
+/// Air at each front-end exchanger: ambient, warmed or cooled by the exchangers before it in the last second, and
+/// warmer by what vapour that becomes frost gives off.
 #[inline(always)]
 pub(crate) fn enter_front_end_air<S: Shape>(sight: Sight<'_>, state: &State, period: &mut Period) {
     each!(S::front_ends(sight.shape) => |place, indices| {
-        let mut air_k = sight.disturbance.air.temperature_k;
+        let mut air_k = sight.disturbance.air.temperature_k + state.frosts[place].rise_k;
         if indices.shares_air {
-            let rise_k_w = sight.parameters.air_streams[place].rise_k_w(sight.disturbance.mean_speed_m_s());
             let mut before = indices.behind;
             while let Some(other) = before {
-                air_k += rise_k_w * state.front_end_w[usize::from(other)];
+                air_k += state.front_end_rise_k[usize::from(other)];
                 before = sight.shape.front_ends[usize::from(other)].behind;
             }
         }

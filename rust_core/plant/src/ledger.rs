@@ -4,6 +4,7 @@
 //! sees the network's matrix or the refrigerant solve, so an error in one of those shows up here.
 
 use crate::architecture::layout::{FLOW_PLACES, Layout};
+use crate::components::cabin_air::{SMALLEST_WATER_KG_S, WaterFlows};
 use crate::flows::{Crossing, Flows};
 use serde::{Deserialize, Serialize};
 use wide::f64x4;
@@ -48,6 +49,41 @@ impl LedgerEntry {
     #[must_use]
     pub fn relative(&self) -> f64 {
         self.residual_w.abs() / self.scale_w
+    }
+}
+
+/// Outcome of the ledger of water for one step: what is stored in the air of a cabin and on its windscreen against what enters
+/// and leaves.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct WaterEntry {
+    /// Change of stored water less what crossed the boundary [kg/s].
+    pub residual_kg_s: f64,
+    /// Water in play: the largest flow or change of store, at least [`SMALLEST_WATER_KG_S`] [kg/s].
+    pub scale_kg_s: f64,
+}
+
+impl WaterEntry {
+    /// Balances a step in which so much more water was stored.
+    #[must_use]
+    #[inline]
+    pub fn balance(flows: &WaterFlows, stored_kg: f64, step_s: f64) -> Self {
+        let stored_kg_s = stored_kg / step_s;
+        let entering = [flows.fresh_kg_s, flows.occupants_kg_s];
+        let leaving = [flows.exhaust_kg_s, flows.core_kg_s, flows.drained_kg_s];
+        let largest = |flows: &[f64]| flows.iter().fold(0.0, |most: f64, flow| most.max(flow.abs()));
+        Self {
+            residual_kg_s: stored_kg_s - entering.iter().sum::<f64>() + leaving.iter().sum::<f64>(),
+            scale_kg_s: largest(&entering)
+                .max(largest(&leaving))
+                .max(stored_kg_s.abs())
+                .max(SMALLEST_WATER_KG_S),
+        }
+    }
+
+    /// Residual as a share of the water in play [-]; 0 before the first step.
+    #[must_use]
+    pub fn relative(&self) -> f64 {
+        self.residual_kg_s.abs() / self.scale_kg_s.max(SMALLEST_WATER_KG_S)
     }
 }
 

@@ -3,6 +3,7 @@
 //! A vehicle with powertrain, battery, cabin, two coolant loops and a refrigerant loop, stepped at 1 s. The
 //! crate knows physics and the vehicle's own controls; it knows neither reinforcement learning nor Python.
 
+mod air_side;
 pub mod architecture;
 pub mod circuits;
 pub mod command;

@@ -1,5 +1,6 @@
 //! The vehicle: one entry, [`Plant::step_into`] ([`Plant::step`] returns what it writes), pure and deterministic.
 
+use crate::air_side;
 use crate::architecture::declaration::{Level, MemberKind};
 use crate::architecture::indices::Indices;
 use crate::architecture::layout::{
@@ -13,10 +14,14 @@ use crate::circuits::refrigeration_loop::{
 };
 use crate::command::{ActuatorRanges, Command, Demand};
 use crate::components::battery::{Battery, BatteryState, BatteryStep, CircuitStep, PowerLimits};
+use crate::components::body::RoadLoad;
+use crate::components::cabin_air::{CabinAir, WaterFlows};
 use crate::components::exhaust_recovery::{ExhaustRecovery, RecoveryTemperatures};
+use crate::components::frost::{Frost, Met};
 use crate::components::pid::ResetPid;
 use crate::components::powertrain::{Powertrain, PowertrainFlow};
 use crate::components::pump::PumpState;
+use crate::components::reachable_speed::{TractionSupply, reachable_speed_m_s};
 use crate::components::thermal_switch::ThermalSwitches;
 use crate::config::Violation;
 use crate::config::initial::InitialParameters;
@@ -25,7 +30,8 @@ use crate::config::vehicle::VehicleParameters;
 use crate::controls::{self, Controls, Period, Sight};
 use crate::error::PlantResult;
 use crate::flows::{Flow, Flows};
-use crate::ledger::{Ledger, LedgerEntry, StoredEnergyChange};
+use crate::ledger::{Ledger, LedgerEntry, StoredEnergyChange, WaterEntry};
+use crate::media::moist_air::saturation_ratio;
 use crate::media::refrigerant::RefrigerantTable;
 use crate::network::built_in::with_shape;
 use crate::network::conditions::{CabinConditions, Conditions, Constants};
@@ -39,6 +45,9 @@ use crate::state::State;
 use crate::step_parameters::StepParameters;
 pub use crate::surroundings::{CONTROL_PERIOD_S, Disturbance};
 use serde::{Deserialize, Serialize};
+
+/// Power that the battery leaves where it limits traction, at most: the speed is found to round-off only [W].
+const ROUNDING_W: f64 = 1.0;
 
 /// What happened during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -61,8 +70,16 @@ pub struct StepRecord {
     pub power_limits: PowerLimits,
     /// Worst ledger entry of the sub-steps.
     pub ledger: LedgerEntry,
+    /// Mean flows of water of each cabin.
+    pub water: [WaterFlows; CABIN_PLACES],
+    /// Air that the blower of the cabin that counts for comfort moves [kg/s].
+    pub supply_air_kg_s: f64,
+    /// Worst entry of the ledger of water, of cabins and sub-steps.
+    pub water_ledger: WaterEntry,
     /// Thermal loads were cut because the battery could not feed them.
     pub loads_shed: bool,
+    /// Vehicle speed at the end [m/s]: what was asked for, or less where motor or battery could not deliver it.
+    pub end_speed_m_s: f64,
 }
 
 /// A vehicle ready to run: parameters, tables and assembled network. It never changes; all that does is in
@@ -118,6 +135,18 @@ struct Drive<'a> {
     wheel_w: f64,
     /// Power flow while driving; while braking it follows later, from what the battery can take.
     driving: Option<PowertrainFlow>,
+}
+
+impl Drive<'_> {
+    /// Electrical power of driving; none while braking [W].
+    fn electrical_w(&self) -> f64 {
+        self.driving.map_or(0.0, |flow| flow.electrical_power_w)
+    }
+
+    /// Whether driving asks for more than the motor has.
+    fn beyond_motor(&self) -> bool {
+        self.driving.is_some_and(|flow| !self.powertrain.within_motor_limits(self.wheel_w, &flow))
+    }
 }
 
 impl Plant {
@@ -216,6 +245,7 @@ impl Plant {
         State {
             time_s: 0.0,
             temperatures_k,
+            cabin_air: [CabinAir::parked(soak_k); CABIN_PLACES],
             battery: self.battery.rested(initial.state_of_charge_pct / 100.0),
             connected: [false; _],
             switches: ThermalSwitches::default(),
@@ -225,10 +255,23 @@ impl Plant {
             refrigeration: RefrigerationState::parked(),
             condensing_pressure_pa: resting_pa.unwrap_or(0.0),
             entered_w: [0.0; LOOP_PLACES],
-            front_end_w: [0.0; FRONT_END_PLACES],
+            front_end_rise_k: [0.0; FRONT_END_PLACES],
+            short_of_power: false,
+            frosts: [Frost::default(); FRONT_END_PLACES],
             heater_power_w: 0.0,
             compressor_power_w: 0.0,
         }
+    }
+
+    /// A parked vehicle in air of a humidity ratio [kg/kg]: the air of its cabins has it too, as far as it is warm enough.
+    #[must_use]
+    pub fn parked_in(&self, initial: &InitialParameters, ambient_humidity_ratio: f64) -> State {
+        let mut state = self.parked(initial);
+        for (air, cabin) in state.cabin_air.iter_mut().zip(&self.layout().cabins) {
+            let cabin_k = state.temperatures_k[cabin.air.index()];
+            air.humidity_ratio = ambient_humidity_ratio.min(saturation_ratio(cabin_k));
+        }
+        state
     }
 
     /// Temperatures that decide about connections, for the recirculated share of each cabin's air.
@@ -325,13 +368,26 @@ impl Plant {
         let compressor_row = shape.compressor_row.map(usize::from);
         let mut period = Period::of(self.ranges.decoded(command, shape.actuators, compressor_row));
         let sight = Sight { vehicle: &self.vehicle, parameters: &self.parameters, shape, disturbance };
+        if state.short_of_power {
+            self.spare_pumps_and_blowers(&mut period.demand);
+        }
         self.controls.begin_period::<S>(sight, &self.branches, state, &mut period);
         if self.substeps == 1 {
-            self.substep::<S>(sight, state, &period, 0, record, tamper);
+            self.substep::<S>(sight, state, &period, 0, &mut 0.0, record, tamper);
         } else {
             self.substeps::<S>(sight, state, &period, record, tamper);
         }
-        self.end_period::<S>(shape, state, &record.flows);
+        self.end_period::<S>(sight, state, &period, &record.flows);
+    }
+
+    /// Lowest coolant and air flows while the battery cannot give what driving asks for.
+    #[cold]
+    fn spare_pumps_and_blowers(&self, demand: &mut Demand) {
+        let layout = self.layout();
+        let pumps = layout.loops.iter().map(|circuit| circuit.flow_row);
+        for row in pumps.chain(layout.cabins.iter().map(|cabin| cabin.blower_row)) {
+            demand[row] = self.ranges.range(row).0;
+        }
     }
 
     /// All sub-steps of a second; the record becomes their mean.
@@ -348,11 +404,19 @@ impl Plant {
         let mut mean = Flows::default();
         let (mut voltage_v, mut current_a) = (0.0, 0.0);
         let mut worst = (LedgerEntry::default(), false);
+        let mut slower_m_s = 0.0;
+        let mut water = ([WaterFlows::default(); CABIN_PLACES], WaterEntry::default());
         for part in 0..self.substeps {
-            self.substep::<S>(sight, state, period, part, record, tamper);
+            self.substep::<S>(sight, state, period, part, &mut slower_m_s, record, tamper);
             mean.accumulate(&record.flows, share);
             voltage_v += record.battery_voltage_v * share;
             current_a += record.battery_current_a * share;
+            for (mean, flows) in water.0.iter_mut().zip(&record.water) {
+                mean.accumulate(flows, share);
+            }
+            if part == 0 || record.water_ledger.relative() > water.1.relative() {
+                water.1 = record.water_ledger;
+            }
             if part == 0 || record.ledger.relative() > worst.0.relative() {
                 worst.0 = record.ledger;
             }
@@ -361,11 +425,13 @@ impl Plant {
         record.flows = mean;
         (record.battery_voltage_v, record.battery_current_a) = (voltage_v, current_a);
         (record.ledger, record.loads_shed) = worst;
+        (record.water, record.water_ledger) = water;
     }
 
     /// What the next second must know of this one.
     #[inline(always)]
-    fn end_period<S: Shape>(&self, shape: &Indices<'_>, state: &mut State, flows: &Flows) {
+    fn end_period<S: Shape>(&self, sight: Sight<'_>, state: &mut State, period: &Period, flows: &Flows) {
+        let Sight { shape, parameters, disturbance, .. } = sight;
         state.time_s += CONTROL_PERIOD_S;
         state.heater_power_w = 0.0;
         each!(S::heaters(shape) => |place, heater| {
@@ -375,20 +441,35 @@ impl Plant {
         });
         state.compressor_power_w = flows[Flow::COMPRESSOR];
         state.pressure_pid.applied(&self.controls.pressure, state.compressor_power_w);
-        state.front_end_w = [0.0; FRONT_END_PLACES];
+        let mut front_end_w = [0.0; FRONT_END_PLACES];
         each!(S::branches(shape) => |_, branch| {
-            if let BranchSide::Ambient(end) = branch.side
-                && shape.front_ends[end].shares_air
-            {
+            if let BranchSide::Ambient(end) = branch.side {
                 let heat_w = flows[branch.flow];
-                state.front_end_w[end] += if branch.out_of_loop { heat_w } else { -heat_w };
+                front_end_w[end] += if branch.out_of_loop { heat_w } else { -heat_w };
             }
         });
-        exchangers::remember::<S>(shape, flows, &mut state.entered_w, &mut state.front_end_w);
+        exchangers::remember::<S>(shape, flows, &mut state.entered_w, &mut front_end_w);
+        each!(S::front_ends(shape) => |place, indices| {
+            if indices.shares_air {
+                state.front_end_rise_k[place] = front_end_w[place] / period.front.airs[place].rate_w_k;
+            }
+            if parameters.front_ends[place].frost.grows() {
+                let frost = &mut state.frosts[place];
+                let met = Met {
+                    air_k: period.front_end_air_k[place] - frost.rise_k,
+                    humidity_ratio: disturbance.ambient_humidity_ratio,
+                    taken_w: -front_end_w[place],
+                };
+                let (own, air) = (&parameters.front_ends[place].frost, &period.front.airs[place]);
+                frost.advance(own, air, &met, CONTROL_PERIOD_S);
+            }
+        });
     }
 
     /// One integration step: traction demand, constant loads, refrigerant loop, heaters, regeneration and battery, thermal
-    /// network, ledger.
+    /// network, ledger. `slower_m_s` is by how much the vehicle is slower than asked for where the step begins, then where
+    /// it ends.
+    #[allow(clippy::too_many_arguments, reason = "what the phases of a step hand on, nothing of it kept")]
     #[inline(always)]
     fn substep<S: Shape>(
         &self,
@@ -396,24 +477,31 @@ impl Plant {
         state: &mut State,
         period: &Period,
         part: u32,
+        slower_m_s: &mut f64,
         record: &mut StepRecord,
         tamper: &mut impl FnMut(Stage, &mut Flows),
     ) {
         let shape = sight.shape;
-        let segment = self.segment(sight.disturbance, part);
+        let mut segment = self.segment(sight.disturbance, part, *slower_m_s);
         record.flows.clear(shape.flows);
         let flows = &mut record.flows;
-        let drive = self.road(sight, state, &segment, flows);
-        self.constant_loads::<S>(sight, state, period, &segment, flows);
+        let mut drive = self.road(sight, state, &segment, flows);
+        self.constant_loads::<S>(sight, period, flows);
+        let moment = air_side::Moment { step_s: segment.step_s, speed_m_s: segment.speed_m_s };
+        let blown_w_k = air_side::step::<S>(sight, state, period, moment, record);
+        let flows = &mut record.flows;
 
-        // What the battery can still give to thermal loads.
+        // Driving comes before thermal loads: they have what it leaves.
         let battery_k = state.temperatures_k[shape.battery.index()];
         let circuit = self.battery.during(&state.battery, battery_k, segment.step_s);
         let limits = circuit.power_limits();
-        let driving_w = drive.driving.map_or(0.0, |flow| flow.electrical_power_w);
-        let spare_w = (limits.discharge_w - driving_w - base_load_w::<S>(shape, flows)).max(0.0);
+        let base_w = base_load_w::<S>(shape, flows);
+        let left_w =
+            self.drive(sight, state, (&limits, base_w), &mut segment, &mut drive, slower_m_s, record);
+        let flows = &mut record.flows;
+        let spare_w = left_w.max(0.0);
 
-        let conditions = self.conditions::<S>(sight, state, period, segment.speed_m_s);
+        let conditions = self.conditions::<S>(sight, state, period, &blown_w_k, segment.speed_m_s);
         let start_k = state.temperatures_k;
         let given = Given {
             capacities_j_k: &self.network.capacities_j_k,
@@ -439,38 +527,99 @@ impl Plant {
         tamper(Stage::Ledger, flows);
         let stored = self.stored_change(shape, state, &segment, &circuit, &battery.state, &end_k);
         record.ledger = self.ledger.balance(shape.flows, flows, &stored, segment.step_s);
-        state.temperatures_k = end_k;
-        state.battery = battery.state;
-        record.battery_voltage_v = battery.voltage_v;
-        record.battery_current_a = battery.current_a;
+        (state.temperatures_k, state.battery) = (end_k, battery.state);
+        (record.battery_voltage_v, record.battery_current_a) = (battery.voltage_v, battery.current_a);
         record.power_limits = limits;
     }
 
+    /// Driving as asked for, or as fast as motor and battery allow with the loads that are fed first [W]; returns what it leaves
+    /// of the battery's power, which is negative where even those lack some [W].
+    #[allow(clippy::too_many_arguments, reason = "what the phases of a step hand on, nothing of it kept")]
     #[inline(always)]
-    fn segment(&self, disturbance: &Disturbance, part: u32) -> Segment {
+    fn drive<'a>(
+        &'a self,
+        sight: Sight<'_>,
+        state: &mut State,
+        (limits, base_w): (&PowerLimits, f64),
+        segment: &mut Segment,
+        drive: &mut Drive<'a>,
+        slower_m_s: &mut f64,
+        record: &mut StepRecord,
+    ) -> f64 {
+        let mut left_w = limits.discharge_w - drive.electrical_w() - base_w;
+        state.short_of_power = left_w < 0.0;
+        record.end_speed_m_s = sight.disturbance.end_speed_m_s;
+        *slower_m_s = 0.0;
+        if drive.driving.is_some() && (left_w < 0.0 || drive.beyond_motor()) {
+            let supply = TractionSupply {
+                most_w: (limits.discharge_w - base_w).max(0.0),
+                recovery_w: limits.charge_w + base_w,
+            };
+            let wanted_m_s = segment.end_m_s;
+            *segment = self.reachable(sight, state, segment, supply);
+            *drive = self.road(sight, state, segment, &mut record.flows);
+            left_w = limits.discharge_w - drive.electrical_w() - base_w;
+            // Where the motor is what limits, the battery has something left.
+            state.short_of_power = left_w < ROUNDING_W;
+            *slower_m_s = wanted_m_s - segment.end_m_s;
+            record.end_speed_m_s = segment.end_m_s;
+        }
+        left_w
+    }
+
+    /// A piece of a second, asked to end at the speed that it would have if all before had ended at theirs.
+    #[inline(always)]
+    fn segment(&self, disturbance: &Disturbance, part: u32, slower_m_s: f64) -> Segment {
         let step_s = CONTROL_PERIOD_S / f64::from(self.substeps);
         let acceleration = (disturbance.end_speed_m_s - disturbance.start_speed_m_s) / CONTROL_PERIOD_S;
         let start_m_s = disturbance.start_speed_m_s + acceleration * step_s * f64::from(part);
         let end_m_s = start_m_s + acceleration * step_s;
+        let start_m_s = (start_m_s - slower_m_s).max(0.0);
         Segment { step_s, start_m_s, end_m_s, speed_m_s: 0.5 * (start_m_s + end_m_s) }
     }
 
-    /// Traction demand.
+    /// The same piece, ended as fast as motor and battery allow: the vehicle falls behind.
+    #[cold]
+    #[inline(never)]
+    fn reachable(
+        &self,
+        sight: Sight<'_>,
+        state: &State,
+        segment: &Segment,
+        supply: TractionSupply,
+    ) -> Segment {
+        let ending =
+            |end_m_s: f64| Segment { end_m_s, speed_m_s: 0.5 * (segment.start_m_s + end_m_s), ..*segment };
+        ending(reachable_speed_m_s(segment.end_m_s, supply, |end_m_s| {
+            let (road, powertrain) = self.pull(sight, state, &ending(end_m_s));
+            (road.wheel_power_w(), powertrain)
+        }))
+    }
+
+    /// What a piece of the road asks of the powertrain.
     #[inline(always)]
-    fn road(&self, sight: Sight<'_>, state: &State, segment: &Segment, flows: &mut Flows) -> Drive<'_> {
+    fn pull(&self, sight: Sight<'_>, state: &State, segment: &Segment) -> (RoadLoad, Powertrain<'_>) {
         let vehicle = &self.vehicle;
         let Segment { step_s, start_m_s, end_m_s, speed_m_s } = *segment;
-        let density_kg_m3 = sight.disturbance.air.density_kg_m3;
-        let road = vehicle.body.road_load(start_m_s, end_m_s, step_s, density_kg_m3);
-        let wheel_w = road.wheel_power_w();
+        let road = vehicle.body.road_load(start_m_s, end_m_s, step_s, &sight.disturbance.air);
         let oil_k = state.temperatures_k[sight.shape.transmission.index()];
+        let motor_k = state.temperatures_k[sight.shape.motor.index()];
         let powertrain = Powertrain {
             motor: &vehicle.motor,
             transmission: &vehicle.transmission,
             regeneration: &vehicle.regeneration,
             speed_m_s,
             spin_loss_w: vehicle.transmission.spin_loss_w(oil_k, speed_m_s),
+            motor_share: vehicle.motor.available_share(motor_k),
         };
+        (road, powertrain)
+    }
+
+    /// Traction demand.
+    #[inline(always)]
+    fn road(&self, sight: Sight<'_>, state: &State, segment: &Segment, flows: &mut Flows) -> Drive<'_> {
+        let (road, powertrain) = self.pull(sight, state, segment);
+        let wheel_w = road.wheel_power_w();
         let driving = (wheel_w >= 0.0).then(|| powertrain.drive(wheel_w));
         flows[Flow::DRAG] = road.drag_power_w;
         flows[Flow::ROLLING] = road.rolling_power_w;
@@ -485,21 +634,18 @@ impl Plant {
 
     /// Loads and gains that nothing in the step changes.
     #[inline(always)]
-    fn constant_loads<S: Shape>(
-        &self,
-        sight: Sight<'_>,
-        state: &State,
-        period: &Period,
-        segment: &Segment,
-        flows: &mut Flows,
-    ) {
+    fn constant_loads<S: Shape>(&self, sight: Sight<'_>, period: &Period, flows: &mut Flows) {
         let Sight { vehicle, parameters, shape, disturbance } = sight;
         flows[Flow::AUXILIARY] = vehicle.controls.auxiliary_power_w;
         each!(S::loops(shape) => |place, circuit| { flows[circuit.pump_flow] = period.pumps_w[place]; });
-        flows[Flow::FAN] = fan_power_w::<S>(sight, state, period, segment.speed_m_s);
+        flows[Flow::FAN] = period.front.fan_w;
         each!(S::cabins(shape) => |place, cabin| {
             flows[cabin.blower_flow] = period.ventilation[place].blower_power_w;
-            flows[cabin.solar_flow] = disturbance.solar_gain_w * parameters.solar_shares[place];
+            let sun_w = disturbance.solar_gain_w * parameters.solar_shares[place];
+            let onto_furnishings = parameters.cabins[place].solar_to_furnishings_share;
+            flows[cabin.solar_flow] = sun_w * (1.0 - onto_furnishings);
+            flows[cabin.solar_soft_flow] = 0.5 * sun_w * onto_furnishings;
+            flows[cabin.solar_hard_flow] = 0.5 * sun_w * onto_furnishings;
             let occupants = disturbance.occupants * parameters.occupant_shares[place];
             flows[cabin.occupants_flow] = occupants * parameters.cabins[place].occupant_heat_w;
         });
@@ -512,6 +658,7 @@ impl Plant {
         sight: Sight<'_>,
         state: &State,
         period: &'a Period,
+        blown_w_k: &[f64; CABIN_PLACES],
         speed_m_s: f64,
     ) -> Conditions<'a> {
         let Sight { vehicle, parameters, shape, disturbance } = sight;
@@ -522,6 +669,7 @@ impl Plant {
         let mut cabins = [CabinConditions::default(); CABIN_PLACES];
         each!(S::cabins(shape) => |place, cabin| {
             cabins[place] = cabin_conditions(sight, (place, cabin), state, period, speed_m_s);
+            cabins[place].panel_w_k += blown_w_k[place];
         });
         let mut conditions = Conditions {
             rates_w_k: &period.rates_w_k,
@@ -567,7 +715,7 @@ impl Plant {
                 branches_w_k: &period.branches_w_k,
                 front_end_air_k: &period.front_end_air_k,
                 ambient_k: sight.disturbance.air.temperature_k,
-                speed_m_s: segment.speed_m_s,
+                front: &period.front,
                 forecasts,
                 demand: &period.demand,
                 may_run: demand_w > 0.0 || state.refrigeration.compressor.running,
@@ -729,28 +877,6 @@ fn draw<S: Shape>(
     flows[Flow::CHEMICAL] = battery.chemical_power_w;
     flows[Flow::BATTERY_LOSS] = battery.loss_w;
     battery
-}
-
-/// Fans of the front-end exchangers that are at work: one for all that share their air [W].
-#[inline(always)]
-fn fan_power_w<S: Shape>(sight: Sight<'_>, state: &State, period: &Period, speed_m_s: f64) -> f64 {
-    let Sight { parameters, shape, .. } = sight;
-    let (mut power_w, mut shared_w): (f64, f64) = (0.0, 0.0);
-    each!(S::front_ends(shape) => |place, indices| {
-        let mut at_work = indices.refrigerant && exchangers::uses_front_end(shape, place, &period.demand);
-        each!(S::branches(shape) => |i, branch| {
-            if branch.side == BranchSide::Ambient(place) {
-                at_work |= state.connected[i];
-            }
-        });
-        let own_w = if at_work { parameters.front_ends[place].fan_power_w(speed_m_s) } else { 0.0 };
-        if indices.shares_air {
-            shared_w = shared_w.max(own_w);
-        } else {
-            power_w += own_w;
-        }
-    });
-    power_w + shared_w
 }
 
 #[inline(always)]

@@ -2,11 +2,14 @@
 //!
 //! Trajectories, reports and observations are derived from these rows.
 
+use crate::architecture::declaration::Level;
 use crate::architecture::kind::Bounds;
-use crate::architecture::layout::Layout;
+use crate::architecture::layout::{ExchangerLayout, ExchangerSide, Layout};
 use crate::architecture::ranks as rank;
+use crate::components::equivalent_temperature::{air_speed_m_s, equivalent_temperature_degc};
 use crate::config::ZERO_CELSIUS_K;
 use crate::flows::Flow;
+use crate::media::moist_air::relative_humidity;
 use crate::numerics::thermal_network::Node;
 use crate::plant::{Plant, StepRecord};
 use crate::state::State;
@@ -26,6 +29,11 @@ pub struct View<'a> {
 }
 
 impl View<'_> {
+    /// Temperature of the cabin that counts for comfort [K].
+    fn cabin_k(&self) -> f64 {
+        self.state.temperatures_k[self.plant.layout().cabins[0].air.index()]
+    }
+
     fn recorded(&self, read: impl Fn(&StepRecord) -> f64) -> f64 {
         self.record.map_or(0.0, read)
     }
@@ -61,6 +69,8 @@ pub enum Reader {
     Connection(u8),
     /// Coolant flow of a loop [kg/s].
     LoopFlow(u8),
+    /// Frost on a front-end exchanger [kg].
+    Frost(u8),
 }
 
 /// Functions are the same if their signals have the same name.
@@ -70,7 +80,9 @@ impl PartialEq for Reader {
             (Self::Function(_), Self::Function(_)) => true,
             (Self::Temperature(a), Self::Temperature(b)) => a == b,
             (Self::Flow(a), Self::Flow(b)) => a == b,
-            (Self::Connection(a), Self::Connection(b)) | (Self::LoopFlow(a), Self::LoopFlow(b)) => a == b,
+            (Self::Connection(a), Self::Connection(b))
+            | (Self::LoopFlow(a), Self::LoopFlow(b))
+            | (Self::Frost(a), Self::Frost(b)) => a == b,
             _ => false,
         }
     }
@@ -86,6 +98,7 @@ impl Reader {
             Self::Temperature(node) => view.state.temperatures_k[node.index()] - ZERO_CELSIUS_K,
             Self::Flow(flow) => view.recorded(|record| record.flows[flow]),
             Self::Connection(member) => connection(view.plant.layout(), view.state, usize::from(member)),
+            Self::Frost(front_end) => view.state.frosts[usize::from(front_end)].mass_kg,
             Self::LoopFlow(circuit) => view.state.pumps[usize::from(circuit)].flow_kg_s,
         }
     }
@@ -95,6 +108,21 @@ impl Reader {
 fn connection(layout: &Layout, state: &State, member: usize) -> f64 {
     let connected = layout.members[member].options.iter().find(|&&branch| state.connected[branch]);
     connected.map_or(0.0, |&branch| (layout.branches[branch].circuit + 1) as f64)
+}
+
+/// Useful heat over compressor power: that of the evaporator while a cabin is cooled, that of the condenser otherwise; 0 at rest.
+fn coefficient_of_performance(view: &View<'_>, record: &StepRecord) -> f64 {
+    let layout = view.plant.layout();
+    let by_coolant =
+        || layout.cabins.iter().filter_map(|cabin| cabin.cooler).any(|b| view.state.connected[b]);
+    let by_refrigerant = || {
+        let cold =
+            |e: &&ExchangerLayout| e.level == Level::Evaporating && matches!(e.side, ExchangerSide::Cabin(_));
+        layout.exchangers.iter().filter(cold).any(|exchanger| record.flows[exchanger.flow] > 0.0)
+    };
+    let useful = if by_coolant() || by_refrigerant() { Flow::EVAPORATOR } else { Flow::CONDENSER };
+    let power_w = record.flows[Flow::COMPRESSOR];
+    if power_w > 0.0 { record.flows[useful] / power_w } else { 0.0 }
 }
 
 /// What a row's bounds are where nothing else is said, by unit.
@@ -160,8 +188,10 @@ impl SignalTable {
             table.add_refrigeration();
             table.add_refrigerant_solve();
         }
+        table.add_cabin_air();
         table.add_checks();
         table.add_connections(layout);
+        table.add_frost(layout);
         table.add_flows(layout);
         table
     }
@@ -179,9 +209,8 @@ impl SignalTable {
     }
 
     fn add_motion(&mut self) {
-        let speed = |v: &View<'_>| {
-            if v.record.is_some() { v.disturbance.end_speed_m_s } else { v.disturbance.start_speed_m_s }
-        };
+        let speed =
+            |v: &View<'_>| v.record.map_or(v.disturbance.start_speed_m_s, |record| record.end_speed_m_s);
         self.rows.extend([
             function("time_s", "s", "time since the start", |v| v.state.time_s)
                 .within(0.0, 7200.0)
@@ -242,9 +271,15 @@ impl SignalTable {
                 v.plant.battery.charge_left(&v.state.battery)
             })
             .within(0.0, 1.0),
-            function("battery_voltage_v", "V", "mean terminal voltage", |v| {
-                v.recorded(|r| r.battery_voltage_v)
-            })
+            function(
+                "battery_voltage_v",
+                "V",
+                "mean terminal voltage; without a current before the first step",
+                |v| {
+                    let at_rest = || v.plant.battery.open_circuit_voltage_v(&v.state.battery);
+                    v.record.map_or_else(at_rest, |r| r.battery_voltage_v)
+                },
+            )
             .within(250.0, 500.0),
             function("battery_current_a", "A", "mean pack current, positive while discharging", |v| {
                 v.recorded(|r| r.battery_current_a)
@@ -341,11 +376,93 @@ impl SignalTable {
                 v.recorded(|r| f64::from(u8::from(r.refrigeration.bracketed)))
             })
             .within(0.0, 1.0),
-            function("cop", "-", "condenser heat flow over compressor power; 0 at rest", |v| {
-                v.recorded(|r| {
-                    let power_w = r.flows[Flow::COMPRESSOR];
-                    if power_w > 0.0 { r.flows[Flow::CONDENSER] / power_w } else { 0.0 }
-                })
+            function(
+                "cop",
+                "-",
+                "condenser heat flow over compressor power, evaporator heat flow while a cabin is cooled; 0 at rest",
+                |v| v.recorded(|r| coefficient_of_performance(v, r)),
+            ),
+        ]);
+    }
+
+    /// Air of the cabin that counts for comfort.
+    fn add_cabin_air(&mut self) {
+        self.rows.extend([
+            function("ambient_humidity_ratio", "kg/kg", "water in a kilogram of dry ambient air", |v| {
+                v.disturbance.ambient_humidity_ratio
+            })
+            .within(0.0, 0.04),
+            function("cabin_humidity_ratio", "kg/kg", "water in a kilogram of dry cabin air", |v| {
+                v.state.cabin_air[0].humidity_ratio
+            })
+            .within(0.0, 0.04),
+            function(
+                "cabin_relative_humidity",
+                "-",
+                "relative humidity of the cabin air, against ice below 0 degC",
+                |v| relative_humidity(v.state.cabin_air[0].humidity_ratio, v.cabin_k()),
+            )
+            .within(0.0, 1.0),
+            function("cabin_co2_ppm", "ppm", "carbon dioxide in the cabin air", |v| {
+                v.state.cabin_air[0].co2 * 1e6
+            })
+            .within(400.0, 3000.0),
+            function("windscreen_temperature_degc", "degC", "inner surface of the windscreen", |v| {
+                v.state.cabin_air[0].windscreen_k - ZERO_CELSIUS_K
+            }),
+            function(
+                "windscreen_fog_margin_k",
+                "K",
+                "inner surface of the windscreen less dew point of the cabin air; fog below 0",
+                |v| v.state.cabin_air[0].fog_margin_k(),
+            )
+            .within(-20.0, 20.0),
+            function("windscreen_water_kg", "kg", "water on the inner surface of the windscreen", |v| {
+                v.state.cabin_air[0].film_kg
+            })
+            .within(0.0, 0.1),
+            function(
+                "cabin_equivalent_temperature_degc",
+                "degC",
+                "uniform room with still air that takes as much heat from the occupants (ISO 14505-2)",
+                |v| {
+                    let cabin = &v.plant.layout().cabins[0];
+                    let degc = |node: Node| v.state.temperatures_k[node.index()] - ZERO_CELSIUS_K;
+                    let speed_m_s = air_speed_m_s(v.recorded(|record| record.supply_air_kg_s));
+                    let radiant_degc = 0.5 * (degc(cabin.soft) + degc(cabin.hard));
+                    equivalent_temperature_degc(degc(cabin.air), radiant_degc, speed_m_s)
+                },
+            ),
+            function("supply_air_flow_kg_s", "kg/s", "air that the blower of the cabin moves", |v| {
+                v.recorded(|record| record.supply_air_kg_s)
+            })
+            .within(0.0, 0.2),
+        ]);
+        self.add_water_flows();
+    }
+
+    fn add_water_flows(&mut self) {
+        let water = |name, description, read: fn(&View<'_>) -> f64| {
+            function(name, "kg/s", description, read).within(-0.005, 0.005)
+        };
+        self.rows.extend([
+            water("fresh_air_water_flow_kg_s", "water that comes in with fresh air", |v| {
+                v.recorded(|r| r.water[0].fresh_kg_s)
+            }),
+            water("occupant_water_flow_kg_s", "water that the occupants give off", |v| {
+                v.recorded(|r| r.water[0].occupants_kg_s)
+            }),
+            water("exhaust_water_flow_kg_s", "water that leaves with the exhaust", |v| {
+                v.recorded(|r| r.water[0].exhaust_kg_s)
+            }),
+            water("cooling_core_water_flow_kg_s", "water that condenses on the cooling core", |v| {
+                v.recorded(|r| r.water[0].core_kg_s)
+            }),
+            water("windscreen_water_flow_kg_s", "water that condenses on the windscreen", |v| {
+                v.recorded(|r| r.water[0].windscreen_kg_s)
+            }),
+            function("water_residual_kg_s", "kg/s", "residual of the ledger of water", |v| {
+                v.recorded(|r| r.water_ledger.residual_kg_s)
             }),
         ]);
     }
@@ -378,6 +495,15 @@ impl SignalTable {
         {
             let name = format!("{}_connection", member.name);
             self.rows.push(plain(name, "-", text.clone(), Reader::Connection(place as u8)));
+        }
+    }
+
+    fn add_frost(&mut self, layout: &Layout) {
+        for (place, front_end) in layout.front_ends.iter().enumerate() {
+            let member = &layout.members[front_end.member];
+            let name = format!("{}_frost_kg", member.name);
+            let text = format!("frost on the {}", member.label);
+            self.rows.push(plain(name, "kg", text, Reader::Frost(place as u8)).within(0.0, 2.0));
         }
     }
 

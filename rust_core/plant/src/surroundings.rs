@@ -10,10 +10,12 @@ pub const CONTROL_PERIOD_S: f64 = 1.0;
 pub struct Disturbance {
     /// Vehicle speed at the beginning [m/s].
     pub start_speed_m_s: f64,
-    /// Vehicle speed at the end [m/s].
+    /// Vehicle speed asked for at the end [m/s].
     pub end_speed_m_s: f64,
     /// Ambient air.
     pub air: AirProperties,
+    /// Water in a kilogram of dry ambient air [kg/kg]; 0 is dry.
+    pub ambient_humidity_ratio: f64,
     /// Solar heat into the cabin [W].
     pub solar_gain_w: f64,
     /// People in the cabin.
@@ -21,7 +23,7 @@ pub struct Disturbance {
 }
 
 impl Disturbance {
-    /// Mean vehicle speed [m/s].
+    /// Mean vehicle speed, where the vehicle does as asked [m/s].
     #[must_use]
     pub fn mean_speed_m_s(&self) -> f64 {
         0.5 * (self.start_speed_m_s + self.end_speed_m_s)

@@ -63,7 +63,7 @@ fn the_default_has_its_actuators_in_their_order() {
     );
     expected.extend(members.map(|member| format!("{member}_request")));
     expected.extend(members.map(|member| format!("{member}_valve")));
-    expected.push("cabin_set_point".to_owned());
+    expected.extend(["cabin_set_point", "windscreen_share"].map(str::to_owned));
     assert_eq!(names, expected);
 }
 

@@ -378,3 +378,143 @@ fn what_is_remembered_changes_iterations_but_no_result() {
     assert!(ran > 2000, "{ran}");
     assert!(remembering < forgetting, "{remembering} and {forgetting} iterations");
 }
+
+/// By hand from the loop's own enthalpies: what of the loss does not leave heats the gas and is passed on by the condenser.
+#[test]
+fn loss_that_heats_the_gas_is_passed_on_by_the_condenser() {
+    let at_share = |share: f64| {
+        let mut parameters = parameters();
+        parameters.compressor.loss_to_gas_share = share;
+        parameters.compressor.electrical_efficiency = 0.7064;
+        let table = hp_plant::media::refrigerant::RefrigerantTable::load("R134a").expect("built in");
+        let cycle = RefrigerationCycle::new(parameters, table).expect("sound");
+        (cycle.solve(&boundary(45.0, 0.0, 900.0, 800.0), &demand(1500.0), None), cycle)
+    };
+    let ((cold, _), (hot, cycle)) = (at_share(0.0), at_share(0.8));
+    for (result, share) in [(&cold, 0.0), (&hot, 0.8)] {
+        let loss_w = (1.0 - 0.7064) * result.electric_power_w;
+        assert!((result.loss_to_ambient_w - (1.0 - share) * loss_w).abs() < 1e-9, "{result:?}");
+        let balance_w = result.electric_power_w + result.evaporator_heat_flow_w
+            - result.condenser_heat_flow_w
+            - result.loss_to_ambient_w;
+        assert!(balance_w.abs() < 1e-9, "{result:?}");
+    }
+    let isobar = cycle.table().condensing_isobar(hot.condensing_temperature_k);
+    let liquid_j_kg = isobar.liquid_enthalpy_j_kg(hot.subcooling_k);
+    let discharge_j_kg = liquid_j_kg + hot.condenser_heat_flow_w / hot.mass_flow_kg_s;
+    let expected_k = cycle.table().discharge_temperature_k(&isobar, discharge_j_kg);
+    assert!((hot.discharge_temperature_k - expected_k).abs() < 1e-6);
+    let cop = |result: &LoopResult| result.condenser_heat_flow_w / result.electric_power_w;
+    assert!(cop(&hot) > cop(&cold) + 0.15, "{} {}", cop(&cold), cop(&hot));
+    assert!(hot.discharge_temperature_k > cold.discharge_temperature_k + 10.0, "{cold:?} {hot:?}");
+}
+
+/// The default vehicle's compressor.
+fn default_compressor() -> hp_plant::components::compressor::CompressorParameters {
+    let vehicle = hp_plant::config::vehicle::VehicleParameters::load("jeffs2019", &[]).expect("built in");
+    vehicle.refrigeration.expect("it has a heat pump").compressor
+}
+
+/// The default vehicle's heat pump between coolants [degC] at a power: COP and discharge temperature [degC].
+fn default_heat_pump(share: f64, hot_degc: f64, cold_degc: f64, power_w: f64) -> (f64, f64) {
+    let vehicle = hp_plant::config::vehicle::VehicleParameters::load("jeffs2019", &[]).expect("built in");
+    let mut parameters = vehicle.refrigeration.expect("it has a heat pump");
+    parameters.compressor.loss_to_gas_share = share;
+    parameters.compressor.maximum_discharge_temperature_degc = 150.0;
+    let table = hp_plant::media::refrigerant::RefrigerantTable::load("R134a").expect("built in");
+    let cycle = RefrigerationCycle::new(parameters, table).expect("sound");
+    let mut b = boundary(hot_degc, cold_degc, 900.0, 800.0);
+    b.hot_conductance_w_k = inlet_conductance_w_k(900.0, vehicle.exchanger_ua_w_k[0]);
+    b.cold_conductance_w_k = inlet_conductance_w_k(800.0, vehicle.exchanger_ua_w_k[1]);
+    let result = cycle.solve(&b, &demand(power_w), None);
+    assert_eq!(result.limited_by, Limit::Power);
+    (result.condenser_heat_flow_w / result.electric_power_w, result.discharge_temperature_k - 273.15)
+}
+
+/// A compressor with a poor motor heats more, and its gas is hotter, with four fifths of the loss in the gas.
+#[test]
+fn most_of_the_default_compressor_s_loss_in_the_gas_raises_heat_and_discharge_temperature() {
+    for (hot_degc, cold_degc) in [(45.0, 0.0), (66.0, -5.0)] {
+        let ((cop, degc), (gas_cop, gas_degc)) = (
+            default_heat_pump(0.0, hot_degc, cold_degc, 1000.0),
+            default_heat_pump(0.8, hot_degc, cold_degc, 1000.0),
+        );
+        println!("{hot_degc}/{cold_degc}: {cop:.2} {degc:.1} degC, {gas_cop:.2} {gas_degc:.1} degC");
+        // Not quite 0.8 of the loss: the condenser works a little hotter for it.
+        let loss = 1.0 - default_compressor().electrical_efficiency;
+        let gained = (gas_cop - cop) / (0.8 * loss);
+        assert!((0.85..1.0).contains(&gained), "{cop} {gas_cop}");
+        // A loss of 0.16 of the power makes the gas 8 K hotter, one of 0.29 some 20 to 30 K.
+        assert!((40.0..105.0).contains(&((gas_degc - degc) / loss)), "{degc} {gas_degc}");
+    }
+}
+
+fn settling() -> RefrigerationCycle {
+    let mut parameters = parameters();
+    parameters.compressor.settling_time_s = 30.0;
+    let table = hp_plant::media::refrigerant::RefrigerantTable::load("R134a").expect("built in");
+    RefrigerationCycle::new(parameters, table).expect("sound")
+}
+
+/// Heat of each second of a demand.
+fn heats_w(
+    cycle: &RefrigerationCycle,
+    state: &mut RefrigerationState,
+    demand_w: f64,
+    seconds: usize,
+) -> Vec<f64> {
+    let b = boundary(45.0, 0.0, 900.0, 800.0);
+    let step = |_| {
+        let result = cycle.step(state, &b, &allowed(demand_w, true), 1.0);
+        let balance_w = result.electric_power_w + result.evaporator_heat_flow_w
+            - result.condenser_heat_flow_w
+            - result.loss_to_ambient_w;
+        assert!(balance_w.abs() < 1e-6, "{result:?}");
+        result.condenser_heat_flow_w
+    };
+    (0..seconds).map(step).collect()
+}
+
+/// Power comes in with the lag itself; the heat is a little ahead, as part load is more efficient.
+#[test]
+fn after_a_start_the_heat_comes_in_with_a_first_order_lag() {
+    for demand_w in [1000.0, 1500.0, 2500.0] {
+        let mut state = RefrigerationState::parked();
+        let heats_w = heats_w(&settling(), &mut state, demand_w, 400);
+        let steady_w = heats_w[399];
+        for (time_s, expected) in [(30, 0.632), (60, 0.865), (90, 0.950)] {
+            let share = heats_w[time_s - 1] / steady_w;
+            let ahead = share - expected;
+            assert!((-0.01..0.1).contains(&ahead), "{demand_w} W after {time_s} s: {share}");
+        }
+        assert!(heats_w.windows(2).all(|pair| pair[1] > pair[0] - 1e-6));
+    }
+}
+
+#[test]
+fn the_longer_it_rested_the_lower_it_starts() {
+    let cycle = settling();
+    let restarted = |rest_s: usize| {
+        let mut state = RefrigerationState::parked();
+        let _ = heats_w(&cycle, &mut state, 1500.0, 400);
+        let rest = heats_w(&cycle, &mut state, 0.0, rest_s);
+        assert_eq!(rest[rest_s - 1], 0.0);
+        heats_w(&cycle, &mut state, 1500.0, 20)[19]
+    };
+    let (soon_w, later_w, long_w) = (restarted(60), restarted(180), restarted(3000));
+    let cold_w = heats_w(&cycle, &mut RefrigerationState::parked(), 1500.0, 20)[19];
+    assert!(soon_w > later_w + 100.0 && later_w > long_w + 100.0, "{soon_w} {later_w} {long_w}");
+    assert!((long_w - cold_w).abs() < 1.0, "{long_w} {cold_w}");
+}
+
+/// A demand below what the lowest speed takes keeps it off or stops it as it does a settled machine.
+#[test]
+fn a_demand_below_the_lowest_speed_stops_a_machine_that_is_not_settled() {
+    let mut state = RefrigerationState::parked();
+    let cycle = settling();
+    assert!(heats_w(&cycle, &mut state, 1500.0, 35)[34] > 0.0);
+    assert_eq!(heats_w(&cycle, &mut state, 60.0, 1)[0], 0.0);
+    assert!(state.compressor.settled_share > 0.5);
+    let mut state = RefrigerationState::parked();
+    assert!(heats_w(&cycle, &mut state, 60.0, 5).iter().all(|&heat_w| heat_w == 0.0));
+}

@@ -4,10 +4,10 @@ use crate::controllers::Rules;
 use crate::controllers::file::Controller;
 use crate::drive_cycle::DriveCycle;
 use crate::heat_demand_commander::HeatDemandCommander;
-use crate::kinds::SCENARIO;
+use crate::pace::Pace;
 use crate::scenario::{ClimateParameters, ScenarioParameters, known_member};
 use hp_plant::config::initial::InitialParameters;
-use hp_plant::config::library::{self, Override};
+use hp_plant::config::library::Override;
 use hp_plant::error::{PlantError, PlantResult};
 use hp_plant::media::air::AirProperties;
 use hp_plant::plant::{Disturbance, Plant};
@@ -22,6 +22,8 @@ pub struct Experiment {
     pub climate: ClimateParameters,
     /// Ambient air of that climate, worked out once.
     pub air: AirProperties,
+    /// Water in a kilogram of its dry air [kg/kg].
+    pub ambient_humidity_ratio: f64,
     /// Initial state of this run.
     pub initial: InitialParameters,
     /// Vehicle.
@@ -73,7 +75,7 @@ impl Experiment {
                 allowed: format!("must begin with one of {}", known.join(", ")),
             });
         }
-        let mut scenario: ScenarioParameters = library::load(SCENARIO, scenario_name, &part("scenario"))?;
+        let mut scenario = ScenarioParameters::load(scenario_name, &part("scenario"))?;
         if let Some(vehicle) = vehicle {
             vehicle.clone_into(&mut scenario.vehicle);
         }
@@ -102,6 +104,7 @@ impl Experiment {
             controller_file: file,
             commander: Arc::new(commander),
             air: scenario.climate.air(),
+            ambient_humidity_ratio: scenario.climate.humidity_ratio(),
             climate: scenario.climate.clone(),
             initial: scenario.initial.clone(),
             scenario: Arc::new(scenario),
@@ -116,7 +119,15 @@ impl Experiment {
         self
     }
 
-    /// What the surroundings do during a step.
+    /// What is asked of a vehicle at its pace in the next second, and what the surroundings do.
+    #[must_use]
+    #[inline]
+    pub fn next_disturbance(&self, step: usize, pace: &Pace) -> Disturbance {
+        let end_speed_m_s = pace.wanted_m_s(&self.cycle, step);
+        Disturbance { start_speed_m_s: pace.speed_m_s, end_speed_m_s, ..self.disturbance(step) }
+    }
+
+    /// What the surroundings do during a step, at the speeds of the cycle.
     #[must_use]
     pub fn disturbance(&self, step: usize) -> Disturbance {
         let speeds = self.cycle.speeds_m_s();
@@ -125,6 +136,7 @@ impl Experiment {
             start_speed_m_s: at(step),
             end_speed_m_s: at(step + 1),
             air: self.air,
+            ambient_humidity_ratio: self.ambient_humidity_ratio,
             solar_gain_w: self.climate.solar_gain_w,
             occupants: f64::from(self.climate.occupants),
         }

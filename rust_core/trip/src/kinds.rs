@@ -17,9 +17,9 @@ pub const SCENARIO: Kind = Kind {
     ending: "toml",
     files: embedded::SCENARIOS,
     references: &[
-        Reference { path: &["vehicle"], kind: &VEHICLE },
-        Reference { path: &["cycle"], kind: &CYCLE },
-        Reference { path: &["controller"], kind: &CONTROLLER },
+        Reference { path: &["vehicle"], kind: &VEHICLE, brings: &[] },
+        Reference { path: &["cycle"], kind: &CYCLE, brings: &[] },
+        Reference { path: &["controller"], kind: &CONTROLLER, brings: &[] },
     ],
 };
 

@@ -8,6 +8,7 @@ pub mod drive_cycle;
 pub mod experiment;
 pub mod heat_demand_commander;
 pub mod kinds;
+pub mod pace;
 pub mod roles;
 pub mod run;
 pub mod scenario;

@@ -106,6 +106,8 @@ pub struct Roles {
     pub recirculation_rows: Vec<usize>,
     /// Rows of blowers.
     pub blower_rows: Vec<usize>,
+    /// Rows of the share of air that is blown at windscreens.
+    pub windscreen_rows: Vec<usize>,
     /// Row of the cabin temperature that heaters aim at.
     pub set_point_row: Option<usize>,
 }
@@ -173,6 +175,7 @@ impl Roles {
             cold_flow_rows: flow_rows(Side::Cold),
             recirculation_rows: layout.cabins.iter().map(|cabin| cabin.recirculation_row).collect(),
             blower_rows: layout.cabins.iter().map(|cabin| cabin.blower_row).collect(),
+            windscreen_rows: layout.cabins.iter().map(|cabin| cabin.windscreen_row).collect(),
             set_point_row: layout.set_point_row,
         }
     }

@@ -2,9 +2,9 @@
 
 use crate::controllers::RuleMemory;
 use crate::experiment::Experiment;
+use crate::pace::{LONGEST_DELAY_S, LONGEST_STANDSTILL_S, Pace};
 use crate::summary::{Summary, supplies_k};
 use hp_plant::command::{Command, Demand};
-use hp_plant::flows::Flow;
 use hp_plant::plant::StepRecord;
 use hp_plant::signals::View;
 use hp_plant::state::State;
@@ -14,12 +14,14 @@ use std::convert::Infallible;
 /// Why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EndReason {
-    /// The cycle was driven to its end.
+    /// The way of the cycle was driven to its end, perhaps late.
     Arrived,
-    /// The battery could not deliver what driving needed.
-    UnservedEnergy,
     /// The usable state of charge reached zero.
     BatteryEmpty,
+    /// The vehicle stood for [`LONGEST_STANDSTILL_S`] although its driver wanted to move.
+    Immobile,
+    /// The vehicle had not arrived [`LONGEST_DELAY_S`] after the end of its cycle.
+    Late,
 }
 
 impl EndReason {
@@ -28,17 +30,15 @@ impl EndReason {
     pub fn name(self) -> &'static str {
         match self {
             Self::Arrived => "arrived",
-            Self::UnservedEnergy => "unserved_energy",
             Self::BatteryEmpty => "battery_empty",
+            Self::Immobile => "immobile",
+            Self::Late => "late",
         }
     }
 }
 
 /// Steps of the plant between two looks at whether to go on: some tens of milliseconds.
 const SUBSTEPS_BETWEEN_CHECKS: u32 = 10_000;
-
-/// Energy that may go unserved before a run ends [J].
-const TOLERATED_UNSERVED_J: f64 = 3600.0;
 
 /// A run in progress; a copy of it is a snapshot.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -47,6 +47,8 @@ pub struct Run {
     pub state: State,
     /// Memory of the rules.
     pub memory: RuleMemory,
+    /// Where it is on its cycle.
+    pub pace: Pace,
     /// Steps done.
     pub steps: usize,
     /// Result of the last step.
@@ -72,10 +74,11 @@ impl Experiment {
     /// The vehicle before the first step.
     #[must_use]
     pub fn start(&self) -> Run {
-        let state = self.plant.parked(&self.initial);
+        let state = self.plant.parked_in(&self.initial, self.ambient_humidity_ratio);
         Run {
             memory: self.rules.awake(&self.plant, &state),
             state,
+            pace: Pace::start(&self.cycle),
             steps: 0,
             record: None,
             summary: Summary::default(),
@@ -107,18 +110,24 @@ impl Experiment {
 
     /// One step with a command; tells why the run is over, if it is.
     pub fn step(&self, run: &mut Run, command: &Command) -> Option<EndReason> {
-        let disturbance = self.disturbance(run.steps);
+        let disturbance = self.next_disturbance(run.steps, &run.pace);
         let supplies_before_k = supplies_k(self.plant.layout(), &run.state);
         let record = run.record.get_or_insert_default();
         self.plant.step_into(&mut run.state, command, &disturbance, record);
+        let (wanted_m_s, end_m_s) = (disturbance.end_speed_m_s, record.end_speed_m_s);
+        run.pace.drove(&self.cycle, run.steps, wanted_m_s, end_m_s);
         run.steps += 1;
+        let delay_s = run.steps.saturating_sub(self.cycle.duration_s());
         run.summary.add(&self.plant, &supplies_before_k, &run.state, record, &disturbance);
-        if run.summary.energy_j(Flow::UNSERVED) > TOLERATED_UNSERVED_J {
-            Some(EndReason::UnservedEnergy)
-        } else if run.summary.final_soc() <= 0.0 {
+        run.summary.keep_pace(delay_s, &run.pace);
+        if run.summary.final_soc() <= 0.0 {
             Some(EndReason::BatteryEmpty)
-        } else if run.steps >= self.cycle.duration_s() {
+        } else if run.pace.arrived(&self.cycle, run.steps) {
             Some(EndReason::Arrived)
+        } else if run.pace.stuck_s >= LONGEST_STANDSTILL_S {
+            Some(EndReason::Immobile)
+        } else if delay_s >= LONGEST_DELAY_S {
+            Some(EndReason::Late)
         } else {
             None
         }

@@ -1,15 +1,20 @@
 //! A scenario: vehicle, cycle, climate, strategy, heat demands.
 
 use crate::heat_demand_commander::{ConnectionChange, HeatDemandParameters, check_order};
+use crate::kinds::SCENARIO;
 use crate::strategy::Strategy;
 use hp_plant::architecture::flaw::among;
 use hp_plant::architecture::layout::Layout;
 use hp_plant::config::initial::InitialParameters;
+use hp_plant::config::library::{self, Override};
 use hp_plant::config::vehicle::built_in_members;
 use hp_plant::config::{Celsius, Validate, Violation};
+use hp_plant::error::PlantResult;
 use hp_plant::media::air::{self, AirProperties};
+use hp_plant::media::moist_air;
 use hp_plant::parameters;
 use serde::Deserialize;
+use toml::Value;
 
 /// Everything that defines a run except the numbers of vehicle and controller.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -41,6 +46,9 @@ parameters! {
     pub struct ClimateParameters {
         /// Ambient temperature [degC].
         ambient_temperature_degc: Celsius = -50.0 .. 60.0,
+        /// Relative humidity of ambient air [-], against ice below 0 degC (ours); dry air where the file does not say.
+        #[serde(default)]
+        relative_humidity: f64 = 0.0 .. 1.0,
         /// Solar heat that reaches the cabin [W] (ours; 0 in the paper).
         solar_gain_w: f64 = 0.0 .. 3000.0,
         /// Number of people (ours; the driver in the paper).
@@ -54,9 +62,29 @@ impl ClimateParameters {
     pub fn air(&self) -> AirProperties {
         air::at_temperature(self.ambient_temperature_degc.kelvin())
     }
+
+    /// Water in a kilogram of dry ambient air [kg/kg].
+    #[must_use]
+    pub fn humidity_ratio(&self) -> f64 {
+        moist_air::humidity_ratio(self.relative_humidity, self.ambient_temperature_degc.kelvin())
+    }
 }
 
 impl ScenarioParameters {
+    /// Loads a scenario by name or path with overrides; one that gives no soak temperature starts soaked at its ambient.
+    ///
+    /// # Errors
+    /// Anything wrong in its file, its bases or an override.
+    pub fn load(name: &str, overrides: &[Override]) -> PlantResult<Self> {
+        let mut table = library::table(SCENARIO, name, overrides)?;
+        let ambient =
+            table.get("climate").and_then(|climate| climate.get("ambient_temperature_degc")).cloned();
+        if let (Some(ambient), Some(Value::Table(initial))) = (ambient, table.get_mut("initial")) {
+            initial.entry("soak_temperature_degc").or_insert(ambient);
+        }
+        library::read(name, table)
+    }
+
     /// Checks that the members it names are those of a vehicle, or of a built-in architecture: scenarios are driven with cars
     /// that lack some of them.
     ///

@@ -1,7 +1,9 @@
 //! Totals of a run.
 
+use crate::pace::Pace;
 use hp_plant::architecture::declaration::Side;
 use hp_plant::architecture::layout::{LOOP_PLACES, Layout};
+use hp_plant::components::cabin_air::CabinAir;
 use hp_plant::config::vehicle::VehicleParameters;
 use hp_plant::config::{Celsius, ZERO_CELSIUS_K};
 use hp_plant::flows::{Flow, Flows};
@@ -17,6 +19,9 @@ pub const COMFORT_TEMPERATURE_DEGC: f64 = 22.0;
 
 /// Deviation within which the cabin counts as comfortable [K].
 pub const COMFORT_BAND_K: f64 = 1.0;
+
+/// Carbon dioxide above which air counts as bad: "hygienically conspicuous" (Umweltbundesamt 2008; Pettenkofer) [ppm].
+pub const CO2_LIMIT_PPM: f64 = 1000.0;
 
 /// Largest overshoot that counts as rounding and not as a breach.
 const PRESSURE_TOLERANCE_BAR: f64 = 0.05;
@@ -60,6 +65,8 @@ pub struct Summary {
     energies_j: Flows,
     duration_s: f64,
     distance_m: f64,
+    delay_s: f64,
+    furthest_behind_m: f64,
     discomfort_k_s: f64,
     comfortable_s: f64,
     first_comfort_s: f64,
@@ -75,6 +82,11 @@ pub struct Summary {
     compressor_starts: f64,
     protection_trips: f64,
     shed_s: f64,
+    fog_s: f64,
+    fog_k_s: f64,
+    co2_above_limit_ppm_s: f64,
+    highest_co2_ppm: f64,
+    worst_water_residual: f64,
 }
 
 impl Default for Summary {
@@ -83,6 +95,8 @@ impl Default for Summary {
             energies_j: Flows::default(),
             duration_s: 0.0,
             distance_m: 0.0,
+            delay_s: 0.0,
+            furthest_behind_m: 0.0,
             discomfort_k_s: 0.0,
             comfortable_s: 0.0,
             first_comfort_s: f64::NAN,
@@ -97,6 +111,11 @@ impl Default for Summary {
             compressor_starts: 0.0,
             protection_trips: 0.0,
             shed_s: 0.0,
+            fog_s: 0.0,
+            fog_k_s: 0.0,
+            co2_above_limit_ppm_s: 0.0,
+            highest_co2_ppm: 0.0,
+            worst_water_residual: 0.0,
         }
     }
 }
@@ -114,7 +133,7 @@ impl Summary {
         let layout = plant.layout();
         self.energies_j.accumulate(&record.flows, CONTROL_PERIOD_S);
         self.duration_s += CONTROL_PERIOD_S;
-        self.distance_m += 0.5 * (disturbance.start_speed_m_s + disturbance.end_speed_m_s) * CONTROL_PERIOD_S;
+        self.distance_m += 0.5 * (disturbance.start_speed_m_s + record.end_speed_m_s) * CONTROL_PERIOD_S;
         let cabin_degc = after.temperatures_k[layout.cabins[0].air.index()] - ZERO_CELSIUS_K;
         let deviation_k = (cabin_degc - COMFORT_TEMPERATURE_DEGC).abs();
         self.discomfort_k_s += deviation_k * CONTROL_PERIOD_S;
@@ -132,7 +151,25 @@ impl Summary {
         self.compressor_starts = f64::from(after.refrigeration.compressor.starts);
         self.protection_trips = f64::from(after.refrigeration.compressor.protection_trips);
         self.shed_s += f64::from(u8::from(record.loads_shed)) * CONTROL_PERIOD_S;
+        self.add_air(&after.cabin_air[0], record);
         self.check_limits(plant, supplies_before_k, after, record);
+    }
+
+    /// Takes down by how much the trip is late after a second, and how far the vehicle is behind.
+    pub fn keep_pace(&mut self, delay_s: usize, pace: &Pace) {
+        self.delay_s = delay_s as f64;
+        self.furthest_behind_m = self.furthest_behind_m.max(pace.behind_m);
+    }
+
+    /// Fog on the windscreen and bad air in the cabin that counts for comfort.
+    fn add_air(&mut self, air: &CabinAir, record: &StepRecord) {
+        let fog_k = (-air.fog_margin_k()).max(0.0);
+        self.fog_s += f64::from(u8::from(fog_k > 0.0)) * CONTROL_PERIOD_S;
+        self.fog_k_s += fog_k * CONTROL_PERIOD_S;
+        let co2_ppm = air.co2 * 1e6;
+        self.co2_above_limit_ppm_s += (co2_ppm - CO2_LIMIT_PPM).max(0.0) * CONTROL_PERIOD_S;
+        self.highest_co2_ppm = self.highest_co2_ppm.max(co2_ppm);
+        self.worst_water_residual = self.worst_water_residual.max(record.water_ledger.relative());
     }
 
     /// A breach is a limit passed while the heat pump runs and moves away from where the step began.
@@ -199,6 +236,8 @@ impl Summary {
             ("final_charge_soc_pct", 100.0 * self.final_charge_soc),
             ("duration_s", self.duration_s),
             ("distance_km", distance_km),
+            ("delay_s", self.delay_s),
+            ("furthest_behind_m", self.furthest_behind_m),
             ("discomfort_k", self.discomfort_k_s / self.duration_s),
             ("time_to_comfort_s", self.first_comfort_s),
             ("comfortable_share", self.comfortable_s / self.duration_s),
@@ -208,6 +247,10 @@ impl Summary {
             ("protection_trips", self.protection_trips),
             ("loads_shed_s", self.shed_s),
             ("highest_pressure_bar", self.highest_pressure_bar),
+            ("fog_s", self.fog_s),
+            ("fog_k_s", self.fog_k_s),
+            ("co2_above_limit_ppm_s", self.co2_above_limit_ppm_s),
+            ("highest_co2_ppm", self.highest_co2_ppm),
         ]);
         for (place, circuit) in layout.loops.iter().enumerate() {
             let (ends, value) = match circuit.side {
@@ -217,6 +260,7 @@ impl Summary {
             add(&[(&format!("{ends}_{}_supply_degc", circuit.name), value)]);
         }
         add(&[("limit_breaches", self.limit_breaches), ("worst_relative_residual", self.worst_residual)]);
+        add(&[("worst_relative_water_residual", self.worst_water_residual)]);
         for row in &layout.flows {
             add(&[(&row.energy_column(), kwh(row.flow))]);
         }

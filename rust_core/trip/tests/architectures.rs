@@ -418,14 +418,30 @@ fn a_vehicle_that_does_not_fit_its_architecture_is_refused_with_file_key_and_wha
     }
 }
 
+/// Air stands where it belongs: in the section of the stream, or in that of an exchanger that shares it with no other.
 #[test]
-fn shared_air_that_is_less_than_what_its_exchangers_pass_is_refused() {
-    let error = cars::plant(&cars::architecture("three-loops"), |car| {
-        let stream = car.get_mut("front_end").and_then(toml::Value::as_table_mut).expect("a section");
-        stream.insert("capacity_rate_w_k".into(), toml::Value::Float(100.0));
+fn air_of_the_front_end_at_the_wrong_place_is_refused() {
+    let shared = cars::plant(&cars::architecture("three-loops"), |car| {
+        let air = car["front_end"].clone();
+        car["radiator"].as_table_mut().expect("a section").insert("air".into(), air);
     });
-    let message = error.expect_err("must be refused").to_string();
-    assert!(message.contains("front_end.capacity_rate_w_k") && message.contains("`ambient`"), "{message}");
+    let message = shared.expect_err("must be refused").to_string();
+    assert!(message.contains("`radiator.air`") && message.contains("`front_end`"), "{message}");
+    for (key, value, parts) in [
+        ("ram_air_share", 1.5, ["ambient_exchanger.air.ram_air_share", "1.5"]),
+        ("blades", 7.0, ["ambient_exchanger.air", "blades"]),
+    ] {
+        let own = cars::plant(&cars::architecture("jeffs2019"), |car| {
+            let air = car["ambient_exchanger"]["air"].as_table_mut().expect("a section");
+            air.insert(key.into(), toml::Value::Float(value));
+        });
+        let message = own.expect_err("must be refused").to_string();
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    }
+    let none = cars::plant(&cars::architecture("jeffs2019"), |car| {
+        car["ambient_exchanger"]["air"] = toml::Value::Float(1.0);
+    });
+    assert!(none.expect_err("no section").to_string().contains("ambient_exchanger.air"));
 }
 
 /// The path of an architecture counts from its vehicle's file, and is as good as its name.

@@ -1,6 +1,7 @@
 //! Configuration: what is built in loads, what is wrong is named.
 
 use hp_plant::config::library::{self, Override};
+use hp_plant::flows::Flow;
 use hp_trip::controllers::Rules;
 use hp_trip::drive_cycle::DriveCycle;
 use hp_trip::experiment::Experiment;
@@ -63,6 +64,21 @@ fn override_without_a_known_prefix_or_section_is_refused() {
 fn unknown_scenario_lists_the_known_ones() {
     let error = Experiment::load("jeffs2019/case9-9", None, &[]).expect_err("unknown").to_string();
     assert!(error.contains("case9-9") && error.contains("jeffs2019/case1-1"), "{error}");
+}
+
+#[test]
+fn a_scenario_without_a_soak_temperature_starts_at_its_ambient() {
+    let soaked_degc = |scenario: &str, changes: &[&str]| {
+        let changes: Vec<Override> =
+            changes.iter().map(|change| Override::parse(change).expect("an assignment")).collect();
+        let experiment = Experiment::load(scenario, None, &changes).unwrap_or_else(|error| panic!("{error}"));
+        experiment.initial.soak_temperature_degc.0
+    };
+    let cold = "scenario.climate.ambient_temperature_degc=-7";
+    assert_eq!(soaked_degc("jeffs2019/case1-1", &[]), 0.0);
+    assert_eq!(soaked_degc("jeffs2019/case1-1", &[cold]), -7.0);
+    assert_eq!(soaked_degc("jeffs2019/case1-1", &[cold, "scenario.initial.soak_temperature_degc=5"]), 5.0);
+    assert_eq!(soaked_degc("ours/cold-start-minus20", &[]), -20.0);
 }
 
 #[test]
@@ -190,4 +206,35 @@ fn what_a_trip_of_0_km_does_not_have_is_none() {
         summary.values(experiment.plant.layout()).into_iter().collect();
     assert_eq!((values["distance_km"], values["energy_kwh_per_100_km"]), (Some(0.0), None));
     assert!(values["energy_kwh"].is_some_and(|energy_kwh| energy_kwh > 0.0));
+}
+
+#[test]
+fn the_first_row_shows_the_voltage_of_the_resting_battery() {
+    for (charge_pct, cell_v) in [(100.0, 4.18), (50.0, 3.71)] {
+        let change = Override::parse(&format!("scenario.initial.state_of_charge_pct={charge_pct}"));
+        let change = change.expect("an assignment");
+        let experiment = Experiment::load("jeffs2019/case1-1", None, &[change]).expect("built in");
+        let rows = experiment.plant.signals.rows();
+        let column = rows.iter().position(|signal| signal.name == "battery_voltage_v").expect("a column");
+        let mut row = Vec::new();
+        experiment.look(&experiment.start(), &mut row);
+        assert!((row[column] - 108.0 * cell_v).abs() < 1e-9, "{} V", row[column]);
+    }
+}
+
+/// 0.008 for each of 32 K: 25.6 % more at -7 than at 25 degC.
+#[test]
+fn tyres_of_a_cold_trip_roll_harder() {
+    let rolling_kwh = |degc: f64, rise: f64| {
+        let changes = [
+            format!("scenario.climate.ambient_temperature_degc={degc}"),
+            format!("vehicle.body.rolling_resistance_rise_per_k={rise}"),
+        ];
+        let changes = changes.map(|text| Override::parse(&text).expect("an assignment"));
+        let experiment = Experiment::load("jeffs2019/case1-1", None, &changes).expect("built in");
+        experiment.totals().0.energy_j(Flow::ROLLING) / 3.6e6
+    };
+    let ratio = rolling_kwh(-7.0, 0.008) / rolling_kwh(25.0, 0.008);
+    assert!((ratio - 1.256).abs() < 1e-9, "{ratio}");
+    assert_eq!(rolling_kwh(-7.0, 0.0).to_bits(), rolling_kwh(25.0, 0.0).to_bits());
 }

@@ -4,13 +4,14 @@
 mod support;
 
 use hp_plant::command::Command;
-use hp_plant::components::heat_exchanger::inlet_conductance_w_k;
+use hp_plant::components::heat_exchanger::{counterflow_conductance_w_k, inlet_conductance_w_k};
 use hp_plant::components::liquid_plate::LiquidPlateParameters;
 use hp_plant::config::Celsius;
 use hp_plant::config::initial::InitialParameters;
 use hp_plant::flows::Flow;
 use hp_plant::media::air;
 use hp_plant::plant::{Disturbance, Plant, StepRecord};
+use hp_plant::signals::View;
 use hp_plant::state::State;
 use support::{cars, physics};
 use toml::{Table, Value};
@@ -22,6 +23,7 @@ fn weather(ambient_degc: f64, speed_m_s: f64) -> Disturbance {
         start_speed_m_s: speed_m_s,
         end_speed_m_s: speed_m_s,
         air: air::at_temperature(Celsius(ambient_degc).kelvin()),
+        ambient_humidity_ratio: 0.0,
         solar_gain_w: 0.0,
         occupants: 1.0,
     }
@@ -231,17 +233,21 @@ fn the_second_exchanger_of_an_air_stream_gets_what_the_first_left() {
         }
         let levels = [("compressor_power", 1500.0), ("chiller_flow", 0.3), ("battery_loop_flow", 0.4)];
         let command = command(&plant, &connections, &levels);
-        let (mut last_w, mut heat_w, speed_m_s) = (0.0, 0.0, 12.0);
+        // Too fast for the fan: ram air of 0.25 m2 at 18 % of the speed.
+        let (mut last_w, mut heat_w, speed_m_s) = (0.0, 0.0, 16.0_f64);
+        let flow_kg_s =
+            air::at_temperature(Celsius(5.0).kelvin()).density_kg_m3 * 0.25 * (0.18 * speed_m_s).hypot(0.1);
+        let air_w_k = 1006.0 * flow_kg_s;
         for time_s in 0..200 {
             let record = second(&plant, &mut state, &command, &weather(5.0, speed_m_s));
             heat_w = column(&plant, &record, "ambient_chiller_heat_flow_w");
-            let own = &plant.vehicle.front_ends[0];
             let share = plant.vehicle.loops[1].circuit.branch_shares.of("ambient");
-            let ua_w_k = own.source_ua_w_k + own.source_ua_per_speed_w_s_k_m * speed_m_s;
+            let ua_w_k = plant.vehicle.front_ends[0].ua_w_k * flow_kg_s.powf(0.6);
             let coolant_w_k = VALVE_OPEN * share * rate_w_k(&plant, &state, "chiller");
-            let air_k = Celsius(5.0).kelvin() + last_w / (1000.0 + 100.0 * speed_m_s);
-            let expected_w = inlet_conductance_w_k(coolant_w_k, ua_w_k)
+            let air_k = Celsius(5.0).kelvin() + last_w / air_w_k;
+            let expected_w = counterflow_conductance_w_k(coolant_w_k, air_w_k, ua_w_k)
                 * (air_k - node_k(&plant, &state, "chiller_supply"));
+            assert_eq!(record.flows[Flow::FAN], 0.0);
             if time_s > 150 {
                 close("front-end exchanger", heat_w, expected_w, 1e-7);
             }
@@ -306,13 +312,19 @@ fn two_condensers_at_the_same_air_are_one_with_twice_the_conductance() {
         move |car: &mut Table| {
             for (_, section) in car.iter_mut() {
                 let Some(section) =
-                    section.as_table_mut().filter(|table| table.contains_key("radiator_ua_w_k"))
+                    section.as_table_mut().filter(|table| table.contains_key("frost_interlock_degc"))
                 else {
                     continue;
                 };
-                section.insert("radiator_ua_w_k".into(), Value::Float(100.0 * factor));
-                section.insert("radiator_ua_per_speed_w_s_k_m".into(), Value::Float(2.0 * factor));
-                section.insert("fan_power_w".into(), Value::Float(0.0));
+                // Twice the core has twice the air; its conductance goes with that to the power of 0.6.
+                section.insert("ua_w_k".into(), Value::Float(450.0 * f64::powf(factor, 0.4)));
+                let air = section.get_mut("air").and_then(Value::as_table_mut).expect("not shared");
+                for (key, value) in
+                    [("core_area_m2", 0.15), ("fan_air_flow_m3_s", 0.4), ("fan_power_w", 100.0)]
+                {
+                    air.insert(key.into(), Value::Float(value * factor));
+                }
+                air.insert("fan_approach_k".into(), Value::Float(20.0 / factor));
             }
         }
     };
@@ -361,4 +373,107 @@ fn a_condenser_that_would_run_backwards_closes_and_the_other_goes_on() {
         assert!(heats_w[0] >= 0.0);
     }
     assert!(ran > 60 && alone > 60, "{ran} {alone}");
+}
+
+/// The same exchanger as heat source and as radiator: `UA` of its air times the logarithmic mean, at the fan's power by the fan laws.
+#[test]
+fn the_front_end_exchanger_passes_the_same_both_ways_and_its_fan_follows_the_request() {
+    let plant = Plant::load("jeffs2019", &[]).expect("built in");
+    let air = air::at_temperature(Celsius(10.0).kelvin());
+    for (circuit, soak_degc, opposite) in [("chiller", -15.0, "htc"), ("htc", 40.0, "chiller")] {
+        // Speed, request, lowest and highest power of the fan.
+        for (speed_m_s, request_w, fan_w) in [
+            (60.0 / 3.6, 20_000.0, (0.0, 0.0)),
+            (0.0, 20_000.0, (199.9, 200.1)),
+            (0.0, 1500.0, (0.1, 100.0)),
+            (7.5, 20_000.0, (24.9, 25.1)),
+            (5.0, 500.0, (0.0, 0.0)),
+            (0.0, 0.0, (0.0, 0.0)),
+        ] {
+            let mut state = parked(&plant, soak_degc, &[]);
+            let flow = format!("{circuit}_flow");
+            let levels = [(flow.as_str(), 0.35), ("ambient_request", request_w)];
+            let command = command(&plant, &[("ambient", circuit)], &levels);
+            for time_s in 0..25 {
+                let record = second(&plant, &mut state, &command, &weather(10.0, speed_m_s));
+                let used_w = record.flows[Flow::FAN];
+                assert!(
+                    (fan_w.0..=fan_w.1).contains(&used_w),
+                    "{circuit} {speed_m_s} {request_w}: {used_w} W"
+                );
+                let heat_w = column(&plant, &record, &format!("ambient_{circuit}_heat_flow_w"));
+                assert_eq!(column(&plant, &record, &format!("ambient_{opposite}_heat_flow_w")), 0.0);
+                if time_s < 20 || request_w < 20_000.0 {
+                    assert!(heat_w < request_w.max(1.0) * 1.3);
+                    continue;
+                }
+                let fan_m3_s = 0.6 * (used_w / 200.0).cbrt();
+                let air_kg_s = air.density_kg_m3 * (0.25 * (0.2 * speed_m_s).hypot(0.1)).hypot(fan_m3_s);
+                let ua_w_k = plant.vehicle.front_ends[0].ua_w_k * air_kg_s.powf(0.6);
+                let place = plant.layout().circuit(circuit).expect("a loop");
+                let share = plant.vehicle.loops[place].circuit.branch_shares.of("ambient");
+                // Rejection has the whole flow, as closed branches hand theirs on.
+                let share = if circuit == "htc" { 1.0 } else { share };
+                let coolant_w_k = VALVE_OPEN * share * rate_w_k(&plant, &state, circuit);
+                let coolant_k = node_k(&plant, &state, &format!("{circuit}_supply"));
+                let (out_w, ambient_k) =
+                    (if circuit == "htc" { heat_w } else { -heat_w }, Celsius(10.0).kelvin());
+                let coolants_k = (coolant_k, coolant_k - out_w / coolant_w_k);
+                let airs_k = (ambient_k, ambient_k + out_w / (1006.0 * air_kg_s));
+                let mean_k = if out_w > 0.0 {
+                    logarithmic_mean_k(coolants_k, airs_k)
+                } else {
+                    logarithmic_mean_k(airs_k, coolants_k)
+                };
+                close(&format!("{circuit} at {speed_m_s} m/s"), heat_w, ua_w_k * mean_k, 1e-5);
+            }
+        }
+    }
+}
+
+fn signal(plant: &Plant, state: &State, record: &StepRecord, disturbance: &Disturbance, name: &str) -> f64 {
+    let signal = plant.signals.rows().iter().find(|signal| signal.name == name).expect("a signal");
+    signal.reader.read(&View { plant, state, record: Some(record), disturbance })
+}
+
+#[test]
+fn the_coefficient_of_performance_is_of_the_evaporator_while_a_cabin_is_cooled() {
+    for (vehicle, cools, heats) in [
+        (
+            "jeffs2019",
+            vec![("cabin", "chiller"), ("ambient", "htc")],
+            vec![("cabin", "htc"), ("ambient", "chiller"), ("motor", "chiller")],
+        ),
+        (
+            "jeffs2019-direct",
+            vec![("cabin_evaporator", "open"), ("front_condenser", "open")],
+            vec![("cabin_condenser", "open"), ("front_evaporator", "open")],
+        ),
+    ] {
+        let plant = Plant::load(vehicle, &[]).expect("built in");
+        for (connections, degc, useful) in [(cools, 35.0, Flow::EVAPORATOR), (heats, 5.0, Flow::CONDENSER)] {
+            let mut state = parked(&plant, degc, &[]);
+            let mut levels = vec![("compressor_power", 1500.0), ("blower_level", 0.6)];
+            if vehicle == "jeffs2019" {
+                levels.extend([("htc_flow", 0.3), ("chiller_flow", 0.3)]);
+            }
+            let command = command(&plant, &connections, &levels);
+            let mut ran = 0;
+            for time_s in 0..60 {
+                let weather = weather(degc, 12.0);
+                let record = second(&plant, &mut state, &command, &weather);
+                // By then the coolant is cold or warm enough for the cabin to be connected.
+                if record.refrigeration.running() && time_s >= 30 {
+                    let expected = record.flows[useful] / record.flows[Flow::COMPRESSOR];
+                    assert_eq!(
+                        signal(&plant, &state, &record, &weather, "cop"),
+                        expected,
+                        "{vehicle} {degc}"
+                    );
+                    ran += 1;
+                }
+            }
+            assert!(ran > 20, "{vehicle} at {degc} degC ran {ran} s");
+        }
+    }
 }

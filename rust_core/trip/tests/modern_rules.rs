@@ -76,6 +76,7 @@ fn steady(rules: &str, ambient_degc: f64, cabin_start_degc: f64, more: &[&str]) 
         format!("scenario.initial.soak_temperature_degc={ambient_degc}"),
         format!("scenario.initial.cabin_temperature_degc={cabin_start_degc}"),
         "scenario.initial.state_of_charge_pct=95.0".to_owned(),
+        "scenario.climate.relative_humidity=0.0".to_owned(),
         "scenario.strategy.battery=\"isolate\"".to_owned(),
         // Two hours must not empty it; isolated, it has no part in the heating.
         "vehicle.battery.strings_in_parallel=4".to_owned(),
@@ -106,7 +107,9 @@ fn spread(rules: &str, ambient_degc: f64) -> (f64, Vec<Steady>) {
 fn steady_power_does_not_depend_on_how_warm_the_cabin_was() {
     for ambient_degc in [-7.0, 0.0, 5.0] {
         let (apart, all) = spread("hpcu-modern", ambient_degc);
-        assert!(apart < 0.02, "{ambient_degc} degC: {apart}, {all:?}");
+        // At 5 degC it is a heat pump of 240 W that switches its lowest speed on and off: 7 W.
+        let largest = if ambient_degc < 5.0 { 0.02 } else { 0.03 };
+        assert!(apart < largest, "{ambient_degc} degC: {apart}, {all:?}");
         // The heat pump alone holds the cabin there, so that there is nothing left for the PTC.
         for steady in all {
             assert!((steady.cabin_degc - 22.0).abs() < 0.1, "{ambient_degc} degC: {steady:?}");
@@ -218,7 +221,7 @@ fn blower_rests_where_five_occupants_have_fresh_air() {
     assert!(flow_kg_s > needed_kg_s && flow_kg_s < 1.5 * needed_kg_s, "{flow_kg_s}");
     assert!(air.blower_power_w < 0.25 * cabin.maximum_blower_power_w);
     let cold = load("hpcu-modern", &["scenario.initial.cabin_temperature_degc=-5.0".to_owned()]);
-    assert_eq!(cold.demand(&mut cold.start())[row], 1.0);
+    assert_eq!(cold.demand(&mut cold.start())[row], cold.rules.constant_settings().blower_level);
 }
 
 /// Commands of a trip by the rules of a file.
@@ -261,7 +264,8 @@ fn files_without_options_ask_for_what_they_did() {
             let mut run = experiment.start();
             let demand = experiment.demand(&mut run);
             let roles = experiment.rules.roles();
-            assert_eq!(demand[roles.blower_rows[0]], settings.blower_level, "{rules}");
+            let level = [settings.blower_level, settings.cooling_blower_level];
+            assert!(level.contains(&demand[roles.blower_rows[0]]), "{rules}");
             let set_point = demand[roles.set_point_row.expect("a PTC")];
             assert_eq!(set_point, settings.cabin_set_point_degc.kelvin(), "{rules}");
         }
@@ -273,6 +277,7 @@ fn modern_rules_without_their_options_are_the_papers() {
     let modern = changed("hpcu-modern", |table| {
         table.remove("options");
         table.insert("ptc_from_deviation_k".to_owned(), (-100.0).into());
+        table.insert("heating_recirculation".to_owned(), 0.0.into());
     });
     let path = modern.path().to_str().expect("plain name");
     assert_eq!(commands(path, "ours/commute-minus5"), commands("hpcu", "ours/commute-minus5"));

@@ -43,7 +43,11 @@ class HeatPlaces:
         for cabin in layout["cabins"]:
             self._powers[cabin["blower_power"]] = "Blower"
             self._powers[cabin["solar"]] = "Sun"
+            self._powers[cabin["solar_soft_furnishings"]] = "Sun"
+            self._powers[cabin["solar_hard_furnishings"]] = "Sun"
             self._powers[cabin["occupants"]] = "Occupants"
+            if cabin["latent"] is not None:
+                self._powers[cabin["latent"]] = "Condensing water"
 
     def links(self) -> list[Link]:
         """Returns the links of the network that touch an inner place, each column once."""

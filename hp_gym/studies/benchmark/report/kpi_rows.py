@@ -50,5 +50,6 @@ DIAGNOSTICS: Final = (
     Kpi("limit_breaches", "Time beyond a limit, all trips of the headline", "s", 0),
     Kpi("distance_km", "Distance", "km", 1),
     Kpi("duration_s", "Duration", "s", 0),
+    Kpi("delay_s", "Delay at arrival", "s", 1),
     Kpi("trips", "Trips driven, headline bands, all seeds", "count", 0),
 )

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use std::fmt;
 use std::sync::Arc;
 
-/// Residual of the energy ledger that counts as round-off, relative.
+/// Residual of the ledgers of energy and water that counts as round-off, relative.
 pub const LEDGER_TOLERANCE: f64 = 1e-9;
 
 /// Residual with which a refrigerant solve counts as checked.
@@ -32,7 +32,7 @@ pub struct Seen {
     pub not_finite: u64,
     /// Steps in which a limit was passed by a machine that runs and moves away from it.
     pub limit_breaches: u64,
-    /// Largest residual of the energy ledger, relative.
+    /// Largest residual of the ledgers of energy and water, relative.
     pub worst_ledger: f64,
     /// Steps with a state of charge outside 0..1.
     pub charge_outside: u64,
@@ -79,7 +79,9 @@ impl Seen {
         experiment.look(run, row);
         self.not_finite += row.iter().filter(|value| !value.is_finite()).count() as u64;
         let Some(record) = &run.record else { return };
-        let ledger = record.ledger.relative();
+        // Of energy and of water: the larger, or the one that is no number.
+        let (energy, water) = (record.ledger.relative(), record.water_ledger.relative());
+        let ledger = if water <= energy { energy } else { water + 0.0 * energy };
         // A comparison that no NaN passes.
         self.worst_ledger = if ledger <= self.worst_ledger { self.worst_ledger } else { ledger };
         let signals = experiment.plant.signals.rows().iter().zip(&*row);
@@ -196,6 +198,7 @@ fn trip(template: &Trip, members: &[String], random: &mut Random) -> Trip {
     trip.climate.ambient_temperature_degc = Celsius(within(random, -40.0, 50.0));
     trip.climate.solar_gain_w = within(random, 0.0, 3000.0);
     trip.climate.occupants = random.index(10) as u32;
+    trip.climate.relative_humidity = within(random, 0.0, 1.0);
     trip.initial.soak_temperature_degc = Celsius(within(random, -40.0, 50.0));
     trip.initial.state_of_charge_pct = within(random, 1.0, 100.0);
     for member in members {

@@ -118,6 +118,8 @@ pub struct Indices<'a> {
     pub base_loads: &'a [Flow],
     /// Node of the battery.
     pub battery: Node,
+    /// Node of motor and inverter.
+    pub motor: Node,
     /// Node of the transmission.
     pub transmission: Node,
     /// Row of the compressor's power.
@@ -162,6 +164,7 @@ pub struct OwnedIndices {
     /// Base loads.
     pub base_loads: Vec<Flow>,
     battery: Node,
+    motor: Node,
     transmission: Node,
     compressor_row: Option<u8>,
     set_point_row: Option<u8>,
@@ -216,6 +219,7 @@ impl OwnedIndices {
             known_first: layout.inlets.iter().rev().map(|inlet| inlet.supply).collect(),
             base_loads: layout.base_loads.clone(),
             battery: layout.battery,
+            motor: layout.motor,
             transmission: layout.transmission,
             compressor_row: layout.compressor_row.map(|row| row as u8),
             set_point_row: layout.set_point_row.map(|row| row as u8),
@@ -245,6 +249,7 @@ impl OwnedIndices {
             known_first: &self.known_first,
             base_loads: &self.base_loads,
             battery: self.battery,
+            motor: self.motor,
             transmission: self.transmission,
             compressor_row: self.compressor_row,
             set_point_row: self.set_point_row,

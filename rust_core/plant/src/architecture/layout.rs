@@ -121,12 +121,22 @@ pub struct CabinLayout {
     pub blower_flow: Flow,
     /// Flow of solar heat.
     pub solar_flow: Flow,
+    /// Flow of solar heat onto the soft furnishings.
+    pub solar_soft_flow: Flow,
+    /// Flow of solar heat onto the hard furnishings.
+    pub solar_hard_flow: Flow,
     /// Flow of its occupants' heat.
     pub occupants_flow: Flow,
+    /// Evaporator in its supply air.
+    pub evaporator: Option<usize>,
+    /// Flow of the heat of water that condenses on its cooling core or evaporator.
+    pub latent_flow: Option<Flow>,
     /// Row of the recirculated share.
     pub recirculation_row: usize,
     /// Row of the blower level.
     pub blower_row: usize,
+    /// Row of the share that is blown at the windscreen.
+    pub windscreen_row: usize,
 }
 
 /// What an exchanger of the refrigerant loop has on its other side.

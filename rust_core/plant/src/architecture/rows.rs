@@ -26,6 +26,8 @@ pub enum Purpose {
     Recirculation(usize),
     /// Blower of a cabin.
     Blower(usize),
+    /// Share of a cabin's supply air that is blown at the windscreen.
+    Windscreen(usize),
     /// Coolant flow of a loop.
     LoopFlow(usize),
     /// Heat flow requested of a member's connection.

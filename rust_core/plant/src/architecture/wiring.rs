@@ -13,14 +13,10 @@ pub enum Law {
     Hose(u8),
     /// Branch between two nodes, or the first of a series.
     Branch(u8),
-    /// Branch that rejects heat to ambient.
-    BranchToAmbient(u8),
-    /// Branch that takes heat from ambient.
-    BranchFromAmbient(u8),
-    /// The same with air that passed another exchanger before: branch, front-end exchanger.
-    BranchToStream(u8, u8),
-    /// The same, taking heat: branch, front-end exchanger.
-    BranchFromStream(u8, u8),
+    /// Branch that rejects heat to the air of a front-end exchanger: branch, front-end exchanger.
+    BranchToAir(u8, u8),
+    /// Branch that takes heat from it: branch, front-end exchanger.
+    BranchFromAir(u8, u8),
     /// Core that heats the supply air of a cabin: branch, cabin.
     HeaterCore(u8, u8),
     /// Core that cools it: branch, cabin.

@@ -3,6 +3,7 @@
 //! Branches are worked out side by side, in whole vector registers and without asking each whether it is connected, which
 //! nobody could predict. So many places are worked on as the vehicle's branches need, in groups of four.
 
+use super::front_ends::FrontAirs;
 use crate::architecture::declaration::MemberKind;
 use crate::architecture::indices::{BranchIndices, Indices};
 use crate::architecture::layout::{
@@ -44,8 +45,6 @@ pub struct BranchFlows {
     pub rates_w_k: [f64; LOOP_PLACES],
     /// Air of each cabin.
     pub ventilation: [Ventilation; CABIN_PLACES],
-    /// Mean vehicle speed [m/s].
-    pub speed_m_s: f64,
 }
 
 /// What branches do follows from these, a vehicle's parameters branch by branch.
@@ -58,9 +57,8 @@ pub struct BranchTable {
     /// Share of that which a closed valve lets through, and what an open one adds.
     valve_closed: BranchValues,
     valve_span: BranchValues,
-    /// Coolant side of the exchanger at rest [W/K], and its rise with the vehicle's speed [W s/(K m)].
+    /// Coolant side of the exchanger of a mass [W/K].
     coolant_ua_w_k: BranchValues,
-    coolant_ua_per_speed_w_s_k_m: BranchValues,
     /// Cores of each cabin [W/K].
     heater_ua_w_k: [f64; CABIN_PLACES],
     cooler_ua_w_k: [f64; CABIN_PLACES],
@@ -85,7 +83,6 @@ impl BranchTable {
             valve_closed: [0.0; BRANCH_PLACES],
             valve_span: [0.0; BRANCH_PLACES],
             coolant_ua_w_k: [0.0; BRANCH_PLACES],
-            coolant_ua_per_speed_w_s_k_m: [0.0; BRANCH_PLACES],
             heater_ua_w_k: [0.0; CABIN_PLACES],
             cooler_ua_w_k: [0.0; CABIN_PLACES],
             plate_ua_w_k: [0.0; BRANCH_PLACES],
@@ -113,7 +110,7 @@ impl BranchTable {
         self.flow_share[place] = if branch.series { 1.0 } else { parameters.branch_shares.of(&member.name) };
         self.valve_closed[place] = parameters.valve_closed;
         self.valve_span[place] = parameters.valve_open - parameters.valve_closed;
-        (self.coolant_ua_w_k[place], self.coolant_ua_per_speed_w_s_k_m[place]) = exchanger(vehicle, place);
+        self.coolant_ua_w_k[place] = exchanger(vehicle, place);
         if let (BranchSide::Ambient(end), false) = (branch.side, branch.out_of_loop) {
             self.frost_k[place] = vehicle.front_ends[end].frost_interlock_degc.kelvin();
         }
@@ -167,10 +164,9 @@ impl BranchTable {
         if redistributes & (open > 0.0) { open } else { 1.0 }
     }
 
-    /// Largest conductance of each branch between its two inlet temperatures [W/K] (effectiveness-NTU); 0 where it is
-    /// not connected.
+    /// Capacity rate of the coolant that passes each branch's component [W/K].
     #[inline(always)]
-    pub fn largest_conductances_w_k<S: Shape>(
+    pub fn coolant_rates_w_k<S: Shape>(
         &self,
         shape: &Indices<'_>,
         demand: &Demand,
@@ -188,19 +184,43 @@ impl BranchTable {
             valve[i] = demand.0[usize::from(branch.valve_row)];
         });
         let places = shape.branch_places().min(BRANCH_PLACES);
-        let (mut coolant_w_k, mut largest_w_k) = ([0.0; BRANCH_PLACES], [0.0; BRANCH_PLACES]);
+        let mut coolant_w_k = [0.0; BRANCH_PLACES];
         for i in 0..places {
             let flow_share = self.flow_share[i] / open[i];
             coolant_w_k[i] =
                 rate_w_k[i] * flow_share * (self.valve_closed[i] + valve[i] * self.valve_span[i]);
-            let ua_w_k = self.coolant_ua_w_k[i] + self.coolant_ua_per_speed_w_s_k_m[i] * flows.speed_m_s;
-            largest_w_k[i] = inlet_conductance_w_k(coolant_w_k[i], ua_w_k);
         }
-        self.enter_cores::<S>(shape, flows, connected, &coolant_w_k, &mut largest_w_k);
+        coolant_w_k
+    }
+
+    /// Largest conductance of each branch between its two inlet temperatures [W/K] (effectiveness-NTU); 0 where it is
+    /// not connected.
+    #[inline(always)]
+    pub fn largest_conductances_w_k<S: Shape>(
+        &self,
+        shape: &Indices<'_>,
+        flows: &BranchFlows,
+        front: &FrontAirs,
+        connected: &Connected,
+        coolant_w_k: &BranchValues,
+    ) -> BranchValues {
+        let places = shape.branch_places().min(BRANCH_PLACES);
+        let mut largest_w_k = [0.0; BRANCH_PLACES];
+        for i in 0..places {
+            largest_w_k[i] = inlet_conductance_w_k(coolant_w_k[i], self.coolant_ua_w_k[i]);
+        }
+        self.enter_cores::<S>(shape, flows, connected, coolant_w_k, &mut largest_w_k);
         each!(S::branches(shape) => |i, branch| {
             if let BranchSide::Plate(from) = branch.side {
                 let from_w_k = flows.rates_w_k[from];
                 largest_w_k[i] = counterflow_conductance_w_k(coolant_w_k[i], from_w_k, self.plate_ua_w_k[i]);
+            }
+            if let BranchSide::Ambient(end) = branch.side
+                && connected[i]
+            {
+                let air = &front.airs[end];
+                let share = if branch.out_of_loop { 1.0 } else { air.source_share };
+                largest_w_k[i] = share * air.to_coolant_w_k(coolant_w_k[i]);
             }
         });
         for i in 0..places {
@@ -259,31 +279,21 @@ pub fn difference_of(shape: &Indices<'_>, branch: &BranchIndices, temperatures: 
     if branch.out_of_loop { loop_k - own_k } else { own_k - loop_k }
 }
 
-/// Coolant side of a branch's exchanger [W/K], and its rise with speed [W s/(K m)]; none where air or another coolant is on the
-/// other side.
-fn exchanger(vehicle: &VehicleParameters, place: usize) -> (f64, f64) {
+/// Coolant side of a branch's exchanger [W/K]; none where air or another coolant is on the other side.
+fn exchanger(vehicle: &VehicleParameters, place: usize) -> f64 {
     let layout = &*vehicle.layout;
     let branch = layout.branches[place];
     match branch.side {
-        BranchSide::Core(_) | BranchSide::Plate(_) => (0.0, 0.0),
-        BranchSide::Ambient(end) => {
-            let front_end = &vehicle.front_ends[end];
-            if branch.out_of_loop {
-                (front_end.radiator_ua_w_k, front_end.radiator_ua_per_speed_w_s_k_m)
-            } else {
-                (front_end.source_ua_w_k, front_end.source_ua_per_speed_w_s_k_m)
-            }
-        }
+        BranchSide::Core(_) | BranchSide::Plate(_) | BranchSide::Ambient(_) => 0.0,
         BranchSide::Mass(_) => {
             let passive = |mass: &&MassLayout| layout.members[mass.member].kind.data().read.is_some();
             let store = layout.masses.iter().filter(passive).position(|mass| mass.member == branch.member);
-            let ua_w_k = match layout.members[branch.member].kind {
+            match layout.members[branch.member].kind {
                 MemberKind::Battery => vehicle.battery.coolant_ua_w_k,
                 MemberKind::Motor => vehicle.motor.coolant_ua_w_k,
                 MemberKind::Transmission => vehicle.transmission.coolant_ua_w_k,
                 _ => store.map_or(0.0, |store| vehicle.stores[store].coolant_ua_w_k),
-            };
-            (ua_w_k, 0.0)
+            }
         }
     }
 }

@@ -5,6 +5,7 @@
 //! inlet that leaves the least room. None runs backwards: one that would, closes.
 
 use super::branches::BranchValues;
+use super::front_ends::FrontAirs;
 use super::refrigeration_loop::{LoopBoundary, LoopResult, SupplyLimit};
 use crate::architecture::declaration::Level;
 use crate::architecture::indices::{ExchangerIndices, Indices};
@@ -45,8 +46,8 @@ pub struct Surroundings<'a> {
     pub front_end_air_k: &'a [f64; FRONT_END_PLACES],
     /// Ambient [K].
     pub ambient_k: f64,
-    /// Mean vehicle speed [m/s].
-    pub speed_m_s: f64,
+    /// Air flow and conductance of each front-end exchanger.
+    pub front: &'a FrontAirs,
     /// Supplies of the loops that heat enters.
     pub forecasts: &'a [Forecast; INLET_PLACES],
     /// Positions of valves.
@@ -77,7 +78,7 @@ pub struct SideState {
     pub open: bool,
     /// Inlet of coolant or air [K].
     pub inlet_k: f64,
-    /// Capacity rate of coolant or air [W/K]; infinite for ambient air.
+    /// Capacity rate of coolant or air [W/K].
     pub capacity_rate_w_k: f64,
     /// Duty per distance between inlet and saturation [W/K].
     pub conductance_w_k: f64,
@@ -263,13 +264,6 @@ pub fn remember<S: Shape>(
     });
 }
 
-/// Whether a valve lets refrigerant through a front-end exchanger.
-#[inline(always)]
-pub fn uses_front_end(shape: &Indices<'_>, front_end: usize, demand: &Demand) -> bool {
-    let own = |exchanger: &&ExchangerIndices| exchanger.side == ExchangerSide::FrontEnd(front_end);
-    shape.exchangers.iter().filter(own).any(|exchanger| is_open(exchanger, demand))
-}
-
 /// One condenser and one evaporator.
 #[inline(always)]
 fn pair(hot: &SideState, cold: &SideState) -> LoopBoundary {
@@ -287,8 +281,9 @@ fn pair(hot: &SideState, cold: &SideState) -> LoopBoundary {
     }
 }
 
+/// Whether a valve lets refrigerant through an exchanger.
 #[inline(always)]
-fn is_open(indices: &ExchangerIndices, demand: &Demand) -> bool {
+pub(super) fn is_open(indices: &ExchangerIndices, demand: &Demand) -> bool {
     indices.valve_row.is_none_or(|row| demand.0[usize::from(row)] > 0.5)
 }
 
@@ -322,22 +317,18 @@ impl Exchanger {
         }
     }
 
-    /// A front-end exchanger: its conductance is that of the air side alone; as a heat source it has the frost interlock.
+    /// A front-end exchanger: its air as for coolant; as a heat source it has the frost interlock.
     fn front_end_side(&self, level: Level, open: bool, end: usize, around: &Surroundings<'_>) -> SideState {
         let Some(front_end) = &self.front_end else { return SideState::default() };
         let inlet_k = around.front_end_air_k[end];
-        let (ua_w_k, per_speed, frosts) = match level {
-            Level::Condensing => (front_end.radiator_ua_w_k, front_end.radiator_ua_per_speed_w_s_k_m, false),
-            Level::Evaporating => {
-                let frosts = around.ambient_k <= front_end.frost_interlock_degc.kelvin();
-                (front_end.source_ua_w_k, front_end.source_ua_per_speed_w_s_k_m, frosts)
-            }
-        };
+        let frosts = level == Level::Evaporating && front_end.is_locked(around.ambient_k);
+        let air = &around.front.airs[end];
+        let share = if level == Level::Evaporating { air.source_share } else { 1.0 };
         SideState {
             open: open && !frosts,
             inlet_k,
-            capacity_rate_w_k: f64::INFINITY,
-            conductance_w_k: ua_w_k + per_speed * around.speed_m_s,
+            capacity_rate_w_k: air.rate_w_k,
+            conductance_w_k: share * air.to_refrigerant_w_k(),
             limit: SupplyLimit { base_k: inlet_k, sensitivity_k_w: 0.0, limit_k: self.limit_k },
         }
     }

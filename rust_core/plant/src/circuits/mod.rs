@@ -2,6 +2,8 @@
 
 pub mod branches;
 pub mod exchangers;
+pub mod front_ends;
 pub mod refrigeration_cycle;
 pub mod refrigeration_loop;
 mod refrigeration_solver;
+pub mod vapour_injection;

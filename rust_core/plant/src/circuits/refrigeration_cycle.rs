@@ -1,10 +1,11 @@
 //! Equations of the quasi-steady vapour-compression cycle, for given saturation temperatures and speed.
 
 use super::refrigeration_loop::LoopBoundary;
+use super::vapour_injection::{Between, Injected, InjectionParameters, VapourInjection};
 use crate::components::compressor::{CompressorParameters, soft_floor};
 use crate::components::refrigerant_exchanger::approach_limited_k;
 use crate::config::{Celsius, Violation};
-use crate::media::refrigerant::{CondensingIsobar, RefrigerantTable};
+use crate::media::refrigerant::{CondensingIsobar, RefrigerantTable, SuctionState};
 use crate::numerics::dual::Real;
 use crate::parameters;
 
@@ -27,6 +28,8 @@ parameters! {
         ;
         /// The electrically driven compressor.
         compressor: CompressorParameters,
+        /// Vapour injection into the compressor; none where the section is absent.
+        injection: Option<InjectionParameters>,
     }
 }
 
@@ -42,8 +45,11 @@ pub struct RefrigerationCycle {
     /// Highest discharge temperature [K].
     pub(super) highest_discharge_k: f64,
     displacement_m3: f64,
-    /// Electrical power per shaft power [-].
+    /// Electrical power per power of compression [-].
     electric_per_shaft: f64,
+    injection: Option<VapourInjection>,
+    /// Heat and work that the gas takes up per work of compression [-]: with what it gets of the losses.
+    gas_per_compression: f64,
 }
 
 /// Coolants as the cycle meets them.
@@ -71,10 +77,15 @@ pub(super) struct CyclePoint<T> {
     pub superheat_k: T,
     pub subcooling_k: T,
     pub evaporating_pressure_pa: T,
+    /// Flow through suction and evaporator [kg/s].
     pub mass_flow_kg_s: T,
+    /// Injected flow per suction flow; the condenser has both [-].
+    pub injected_share: T,
     pub suction_enthalpy_j_kg: T,
     pub discharge_enthalpy_j_kg: T,
     pub liquid_enthalpy_j_kg: T,
+    /// Liquid at the evaporator's valve; that of the condenser where nothing is injected [J/kg].
+    pub evaporator_inlet_j_kg: T,
     pub isobar: CondensingIsobar<T>,
     pub evaporator_w: T,
     pub condenser_w: T,
@@ -100,11 +111,15 @@ impl RefrigerationCycle {
             parameters.maximum_pressure_bar * PASCAL_PER_BAR,
         );
         if high_pa > highest_pa {
-            let allowed = format!("must be at most {} for {}", highest_pa / PASCAL_PER_BAR, table.name());
+            let critical = table.limits().map_or(String::new(), |limits| {
+                format!(", whose critical point is at {} bar", limits.critical_pressure_bar)
+            });
+            let allowed =
+                format!("must be at most {:.2} for {}{critical}", highest_pa / PASCAL_PER_BAR, table.name());
             return violation("maximum_pressure_bar", parameters.maximum_pressure_bar, allowed);
         }
         if low_pa < lowest_pa {
-            let allowed = format!("must be at least {} for {}", lowest_pa / PASCAL_PER_BAR, table.name());
+            let allowed = format!("must be at least {:.3} for {}", lowest_pa / PASCAL_PER_BAR, table.name());
             return violation(
                 "minimum_suction_pressure_bar",
                 parameters.minimum_suction_pressure_bar,
@@ -121,6 +136,9 @@ impl RefrigerationCycle {
             highest_discharge_k: Celsius(compressor.maximum_discharge_temperature_degc).kelvin(),
             displacement_m3: compressor.displacement_m3(),
             electric_per_shaft: compressor.electrical_efficiency.recip(),
+            injection: parameters.injection.clone().map(|injection| VapourInjection::new(injection, &table)),
+            gas_per_compression: 1.0
+                + compressor.loss_to_gas_share * (compressor.electrical_efficiency.recip() - 1.0),
             parameters,
             table,
         })
@@ -169,14 +187,29 @@ impl RefrigerationCycle {
 
         let efficiency =
             parameters.compressor.efficiency(isobar.pressure_pa / suction.pressure_pa, speed_rev_s);
-        let isentropic_j_kg = isobar.enthalpy_at_entropy_j_kg(suction.entropy_j_kg_k) - suction.enthalpy_j_kg;
-        let work_j_kg = soft_floor(isentropic_j_kg, WORK_KNEE_J_KG) / efficiency.isentropic;
+        let Injected { share: injected_share, evaporator_inlet_j_kg, work_j_kg, discharge_enthalpy_j_kg } =
+            if let Some(injection) = &self.injection {
+                self.injected(
+                    injection,
+                    &Between {
+                        table: &self.table,
+                        evaporating_k,
+                        suction: &suction,
+                        isobar: &isobar,
+                        subcooling_k: condensing_k.then(subcooling_k),
+                        liquid_enthalpy_j_kg,
+                        isentropic_efficiency: efficiency.isentropic,
+                    },
+                )
+            } else {
+                self.in_one_stage(&suction, &isobar, liquid_enthalpy_j_kg, efficiency.isentropic)
+            };
         let mass_flow_kg_s =
             efficiency.volumetric * suction.density_kg_m3 * speed_rev_s * self.displacement_m3;
 
         let compression_w = mass_flow_kg_s * work_j_kg;
-        let evaporator_w = mass_flow_kg_s * (suction.enthalpy_j_kg - liquid_enthalpy_j_kg);
-        let condenser_w = evaporator_w + compression_w;
+        let evaporator_w = mass_flow_kg_s * (suction.enthalpy_j_kg - evaporator_inlet_j_kg);
+        let condenser_w = evaporator_w + compression_w * self.gas_per_compression;
         CyclePoint {
             evaporating_k,
             condensing_k,
@@ -185,9 +218,11 @@ impl RefrigerationCycle {
             subcooling_k: condensing_k.then(subcooling_k),
             evaporating_pressure_pa: suction.pressure_pa,
             mass_flow_kg_s,
+            injected_share,
             suction_enthalpy_j_kg: suction.enthalpy_j_kg,
-            discharge_enthalpy_j_kg: suction.enthalpy_j_kg + work_j_kg,
+            discharge_enthalpy_j_kg,
             liquid_enthalpy_j_kg,
+            evaporator_inlet_j_kg,
             isobar,
             evaporator_w,
             condenser_w,
@@ -195,6 +230,35 @@ impl RefrigerationCycle {
             cold_residual_k: -(evaporating_k - sides.cold_inlet_k) - evaporator_w * sides.cold_resistance_k_w,
             hot_residual_k: condensing_k - sides.hot_inlet_k - condenser_w * sides.hot_resistance_k_w,
         }
+    }
+
+    /// Compression without injection.
+    #[inline(always)]
+    fn in_one_stage<T: Real>(
+        &self,
+        suction: &SuctionState<T>,
+        isobar: &CondensingIsobar<T>,
+        liquid_enthalpy_j_kg: T,
+        isentropic_efficiency: T,
+    ) -> Injected<T> {
+        let isentropic_j_kg = isobar.enthalpy_at_entropy_j_kg(suction.entropy_j_kg_k) - suction.enthalpy_j_kg;
+        let work_j_kg = soft_floor(isentropic_j_kg, WORK_KNEE_J_KG) / isentropic_efficiency;
+        Injected {
+            share: T::constant(0.0),
+            evaporator_inlet_j_kg: liquid_enthalpy_j_kg,
+            work_j_kg,
+            discharge_enthalpy_j_kg: suction.enthalpy_j_kg + work_j_kg * self.gas_per_compression,
+        }
+    }
+
+    /// Compression with injection; the losses heat all gas, the injected too.
+    #[inline]
+    fn injected<T: Real>(&self, injection: &VapourInjection, between: &Between<'_, T>) -> Injected<T> {
+        let mut injected = injection.compress(between);
+        let loss_j_kg = injected.work_j_kg * (self.gas_per_compression - 1.0);
+        injected.discharge_enthalpy_j_kg =
+            injected.discharge_enthalpy_j_kg + loss_j_kg / (injected.share + 1.0);
+        injected
     }
 
     /// All quantities of the cycle and both balances, without derivatives.

@@ -118,8 +118,10 @@ pub struct LoopResult {
     pub condensing_pressure_pa: f64,
     /// Compressor speed [rev/s].
     pub speed_rev_s: f64,
-    /// Refrigerant mass flow [kg/s].
+    /// Refrigerant mass flow at suction [kg/s].
     pub mass_flow_kg_s: f64,
+    /// Flow that is injected besides [kg/s]; 0 without vapour injection.
+    pub injected_mass_flow_kg_s: f64,
     /// Electrical power of the compressor, with the start loss [W].
     pub electric_power_w: f64,
     /// Heat to the hot coolant [W].
@@ -128,7 +130,7 @@ pub struct LoopResult {
     pub evaporator_heat_flow_w: f64,
     /// Gas temperature at the compressor outlet [K].
     pub discharge_temperature_k: f64,
-    /// Motor loss and start loss, which leave to ambient [W].
+    /// What leaves to ambient: start loss, and the loss of motor and inverter less what heats the gas [W].
     pub loss_to_ambient_w: f64,
     /// Share of the start loss in power and loss [W].
     pub start_loss_w: f64,
@@ -173,6 +175,13 @@ impl RefrigerationState {
     #[must_use]
     pub fn parked() -> Self {
         Self { compressor: CompressorState::parked(), last: None }
+    }
+
+    /// How far the refrigerant evaporated below what entered its evaporator in the last step [K]; none at rest.
+    #[must_use]
+    #[inline]
+    pub fn evaporator_distance_k(&self) -> Option<f64> {
+        self.last.filter(|_| self.compressor.running).map(|last| last.distances[0])
     }
 
     /// Keeps a solution, if the machine ran, and how it changed from that of the step before.
@@ -246,13 +255,15 @@ impl RefrigerationCycle {
         let demand_w =
             allowed.demand_w.min(allowed.available_w - state.compressor.start_loss_w(parameters, step_s));
         let wanted = demand_w >= parameters.minimum_power_w;
-        let hold_minimum_speed = state.compressor.held_on(parameters);
+        let held_on = state.compressor.held_on(parameters);
+        let power_share = state.compressor.power_share(parameters, step_s);
         let startable = allowed.may_start && wanted && state.compressor.rested(parameters);
-        let mut result = if (state.compressor.running && (wanted || hold_minimum_speed)) || startable {
+        let mut result = if (state.compressor.running && (wanted || held_on)) || startable {
             let demand = LoopDemand {
-                power_limit_w: if wanted { demand_w } else { 0.0 },
+                power_limit_w: if wanted { demand_w * power_share } else { 0.0 },
                 speed_limit_rev_s: state.compressor.speed_limit_rev_s(parameters, step_s),
-                hold_minimum_speed,
+                // Not yet settled, it may need more at its lowest speed than its share.
+                hold_minimum_speed: held_on || (wanted && power_share < 1.0),
             };
             let expected =
                 state.last.map(|last| last.expected(boundary, &demand, parameters.minimum_speed_rev_s));
@@ -260,8 +271,11 @@ impl RefrigerationCycle {
         } else {
             self.at_rest(boundary, LoopStatus::Off, Limit::Power)
         };
-        if result.electric_power_w > allowed.available_w {
-            // Not even minimum speed can be fed: the minimum time on ends here.
+        // At its lowest speed only: elsewhere the solution is at the demand, and round-off is no reason to stop.
+        let lowest = result.status == LoopStatus::MinimumSpeed;
+        let beyond_demand = !held_on && lowest && result.electric_power_w > demand_w;
+        if result.electric_power_w > allowed.available_w || beyond_demand {
+            // Not even minimum speed can be fed, or it was not asked for: the minimum time on ends here.
             result = self.at_rest(boundary, LoopStatus::Off, Limit::Power);
         }
         let forced = result.limited_by != Limit::Power;
@@ -338,7 +352,8 @@ impl RefrigerationCycle {
         let unknowns =
             [result.evaporating_temperature_k, result.condensing_temperature_k, result.speed_rev_s];
         let point = self.point(&sides, unknowns);
-        let flow = point.mass_flow_kg_s;
+        let suction_flow = point.mass_flow_kg_s;
+        let flow = suction_flow * (1.0 + point.injected_share);
         let (dew, bubble) = (point.isobar.dew_enthalpy_j_kg, point.isobar.liquid_enthalpy_j_kg(0.0));
         let suction_dew = self.table.suction_state(point.evaporating_k, 0.0).enthalpy_j_kg;
         let condenser = CondenserStreams {
@@ -347,7 +362,7 @@ impl RefrigerationCycle {
             discharge_k: self.discharge_k(&point),
             condensing_k: point.condensing_k,
             subcooling_k: point.subcooling_k,
-            desuperheating_w: flow * (point.discharge_enthalpy_j_kg - dew).max(0.0),
+            desuperheating_w: suction_flow * (point.discharge_enthalpy_j_kg - dew).max(0.0),
             condensation_w: flow * (point.discharge_enthalpy_j_kg.min(dew) - bubble),
             subcooling_w: flow * (bubble - point.liquid_enthalpy_j_kg),
         };
@@ -356,8 +371,8 @@ impl RefrigerationCycle {
             capacity_rate_w_k: boundary.cold_capacity_rate_w_k,
             evaporating_k: point.evaporating_k,
             superheat_k: point.superheat_k,
-            evaporation_w: flow * (suction_dew - point.liquid_enthalpy_j_kg),
-            superheating_w: flow * (point.suction_enthalpy_j_kg - suction_dew),
+            evaporation_w: suction_flow * (suction_dew - point.evaporator_inlet_j_kg),
+            superheating_w: suction_flow * (point.suction_enthalpy_j_kg - suction_dew),
         };
         let ([a, b, c, d], [e, f, g]) = (condenser.margins_k(), evaporator.margins_k());
         [a, b, c, d, e, f, g]
@@ -382,11 +397,14 @@ impl RefrigerationCycle {
             condensing_pressure_pa: point.isobar.pressure_pa,
             speed_rev_s: point.speed_rev_s,
             mass_flow_kg_s: point.mass_flow_kg_s,
+            injected_mass_flow_kg_s: point.mass_flow_kg_s * point.injected_share,
             electric_power_w: point.electric_w,
             condenser_heat_flow_w: point.condenser_w,
             evaporator_heat_flow_w: point.evaporator_w,
             discharge_temperature_k: discharge_k,
-            loss_to_ambient_w: (1.0 - self.parameters.compressor.electrical_efficiency) * point.electric_w,
+            loss_to_ambient_w: (1.0 - self.parameters.compressor.loss_to_gas_share)
+                * (1.0 - self.parameters.compressor.electrical_efficiency)
+                * point.electric_w,
             start_loss_w: 0.0,
             superheat_k: point.superheat_k,
             subcooling_k: point.subcooling_k,
@@ -408,6 +426,7 @@ impl RefrigerationCycle {
             condensing_pressure_pa: self.table.saturation_pressure_pa(condensing_k),
             speed_rev_s: 0.0,
             mass_flow_kg_s: 0.0,
+            injected_mass_flow_kg_s: 0.0,
             electric_power_w: 0.0,
             condenser_heat_flow_w: 0.0,
             evaporator_heat_flow_w: 0.0,

@@ -4,6 +4,7 @@
 //! open-circuit voltage its exact mean, so terminal energy, losses and stored energy balance to round-off.
 
 use super::battery_tables::{CircuitTable, OpenCircuitVoltageTable, UsableCapacityTable};
+use super::rate_limit::{Allowance, RateLimit, RateLimitTable};
 use super::underbody_plate::PlateParameters;
 use crate::architecture::flows::Flow;
 use crate::architecture::kind::{Bounds, ComponentKind, Role};
@@ -41,8 +42,13 @@ parameters! {
         cell_mass_kg: f64 = 0.01 .. 10.0,
         /// Specific heat of the cell [J/(kg K)].
         cell_specific_heat_j_kg_k: f64 = 300.0 .. 3000.0,
-        /// Factor on the resistance tables [-].
+        /// Capacity of the cell that the circuit tables belong to: a cell of the same family with another capacity has
+        /// resistances in inverse proportion to it [Ah].
+        circuit_reference_capacity_ah: f64 = 0.5 .. 500.0,
+        /// Factor on the resistance tables: from their cell family to the vehicle's [-].
         resistance_scale: f64 = 0.1 .. 10.0,
+        /// Time constant with which the rate limits forget the current: electrolyte and particles level out [s].
+        rate_memory_s: f64 = 1.0 .. 3600.0,
         /// Lowest cell voltage under load [V].
         minimum_cell_voltage_v: f64 = 1.0 .. 3.6,
         /// Highest cell voltage when charged [V].
@@ -50,10 +56,10 @@ parameters! {
         /// Coolant plate conductance [W/K].
         coolant_ua_w_k: f64 = 1.0 .. 10000.0,
         ;
-        /// Charge-rate limit against temperature.
-        charge_limit: RateLimitParameters,
-        /// Discharge-rate limit against temperature.
-        discharge_limit: RateLimitParameters,
+        /// Largest charging rates against temperature and state of charge.
+        charge_limit: RateLimitTable,
+        /// Largest discharging rates against temperature and state of charge.
+        discharge_limit: RateLimitTable,
         /// Exterior plate under the vehicle.
         plate: PlateParameters,
         /// Open-circuit voltage against state of charge.
@@ -62,18 +68,6 @@ parameters! {
         circuit: CircuitTable,
         /// Share of the capacity that can be used against temperature, C_eff of equation (6).
         usable_capacity: UsableCapacityTable,
-    }
-}
-
-parameters! {
-    /// A C-rate limit that rises linearly with temperature between zero and a largest rate.
-    pub struct RateLimitParameters {
-        /// Rate at 0 degC [1/h]; may be negative, the limit itself never is.
-        rate_at_zero_degc_per_h: f64 = -20.0 .. 100.0,
-        /// Rise with temperature [1/h per K].
-        rate_rise_per_h_k: f64 = 0.0 .. 10.0,
-        /// Largest rate [1/h].
-        maximum_rate_per_h: f64 = 0.0 .. 100.0,
     }
 }
 
@@ -88,6 +82,8 @@ pub struct BatteryState {
     ///
     /// Energy and not voltage is the state, because C1 changes with temperature and charge.
     pub polarisation: f64,
+    /// Charging rate of the last minute or so, negative after a discharge: what the rate limits remember [1/h].
+    pub recent_charging_per_h: f64,
 }
 
 /// Limits on the terminal power during a step.
@@ -125,20 +121,12 @@ pub struct Battery {
     per_cell_capacity_1_c: f64,
     minimum_string_voltage_v: f64,
     maximum_string_voltage_v: f64,
-    charge_limit: RateLimitParameters,
-    discharge_limit: RateLimitParameters,
+    charge_limit: RateLimit,
+    discharge_limit: RateLimit,
+    rate_memory_1_s: f64,
     open_circuit_voltage: LinearTable,
     circuit: BilinearTable<3>,
     usable_capacity: LinearTable,
-}
-
-impl RateLimitParameters {
-    /// Largest rate at a temperature [1/h].
-    #[must_use]
-    pub fn rate_per_h(&self, temperature_k: f64) -> f64 {
-        let rate = self.rate_at_zero_degc_per_h + self.rate_rise_per_h_k * (temperature_k - ZERO_CELSIUS_K);
-        rate.clamp(0.0, self.maximum_rate_per_h)
-    }
 }
 
 impl BatteryParameters {
@@ -159,7 +147,9 @@ impl Battery {
     /// Prepares the tables.
     #[must_use]
     pub fn new(parameters: &BatteryParameters) -> Self {
-        let scale = parameters.resistance_scale;
+        // Resistance times capacity is what the cells of a family have in common.
+        let scale = parameters.resistance_scale
+            * (parameters.circuit_reference_capacity_ah / parameters.cell_capacity_ah);
         let circuit = &parameters.circuit;
         let times = |table: &[Vec<f64>], factor: f64| -> Vec<Vec<f64>> {
             table.iter().map(|row| row.iter().map(|value| value * factor).collect()).collect()
@@ -186,8 +176,9 @@ impl Battery {
             per_cell_capacity_1_c: (parameters.cell_capacity_ah * 3600.0).recip(),
             minimum_string_voltage_v: parameters.minimum_cell_voltage_v * cells_in_series,
             maximum_string_voltage_v: parameters.maximum_cell_voltage_v * cells_in_series,
-            charge_limit: parameters.charge_limit.clone(),
-            discharge_limit: parameters.discharge_limit.clone(),
+            charge_limit: RateLimit::new(&parameters.charge_limit, parameters.rate_memory_s),
+            discharge_limit: RateLimit::new(&parameters.discharge_limit, parameters.rate_memory_s),
+            rate_memory_1_s: parameters.rate_memory_s.recip(),
             open_circuit_voltage,
             circuit: BilinearTable::new(
                 &temperatures,
@@ -202,7 +193,12 @@ impl Battery {
     #[must_use]
     pub fn rested(&self, state_of_charge: f64) -> BatteryState {
         let drawn = (1.0 - state_of_charge) * self.cell_capacity_c;
-        BatteryState { charge_drawn_c: drawn, initial_charge_drawn_c: drawn, polarisation: 0.0 }
+        BatteryState {
+            charge_drawn_c: drawn,
+            initial_charge_drawn_c: drawn,
+            polarisation: 0.0,
+            recent_charging_per_h: 0.0,
+        }
     }
 
     /// State of charge by charge [-]: what the open-circuit voltage depends on.
@@ -224,6 +220,12 @@ impl Battery {
     #[must_use]
     pub fn charge_left(&self, state: &BatteryState) -> f64 {
         not_negative(self.state_of_charge(state))
+    }
+
+    /// Terminal voltage without a current, after a rest [V].
+    #[must_use]
+    pub fn open_circuit_voltage_v(&self, state: &BatteryState) -> f64 {
+        self.open_circuit_voltage.at(self.state_of_charge(state)) * self.cells_in_series
     }
 
     /// Energy stored in all RC pairs [J].
@@ -262,6 +264,7 @@ impl Battery {
             polarisation_v,
             decay,
             mean_decay,
+            remembered: elementary::exp(-step_s * self.rate_memory_1_s),
             source_v: open_circuit_v - polarisation_v * mean_decay,
             source_ohm: series_ohm + polarisation_ohm * (1.0 - mean_decay) + discharge_ohm,
         }
@@ -292,6 +295,8 @@ pub struct CircuitStep<'a> {
     polarisation_v: f64,
     decay: f64,
     mean_decay: f64,
+    /// Share of the recent rate that the rate limits still remember at the end.
+    remembered: f64,
     /// Voltage and resistance of the equivalent source, `P = I (U - R I)`.
     source_v: f64,
     source_ohm: f64,
@@ -305,13 +310,16 @@ impl CircuitStep<'_> {
         let battery = self.battery;
         let (voltage, resistance) = (self.source_v, self.source_ohm);
         let per_ohm = resistance.recip();
-        let rate_a = |limit: &RateLimitParameters| {
-            limit.rate_per_h(self.temperature_k) * battery.cell_capacity_c / 3600.0
+        let rate_a = |limit: &RateLimit, recent_per_h: f64| {
+            let allowance = Allowance { recent_per_h, remembered: self.remembered };
+            let rate_per_h = limit.rate_per_h(self.temperature_k, self.state_of_charge, &allowance);
+            rate_per_h * battery.cell_capacity_c / 3600.0
         };
-        let discharge_a = rate_a(&battery.discharge_limit)
+        let recent_per_h = self.state.recent_charging_per_h;
+        let discharge_a = rate_a(&battery.discharge_limit, -recent_per_h)
             .min((voltage - battery.minimum_string_voltage_v) * per_ohm)
             .clamp(0.0, 0.5 * voltage * per_ohm);
-        let charge_a = rate_a(&battery.charge_limit)
+        let charge_a = rate_a(&battery.charge_limit, recent_per_h)
             .min((battery.maximum_string_voltage_v - voltage) * per_ohm)
             // A full battery accepts no charge.
             .min(self.state.charge_drawn_c / self.step_s)
@@ -393,10 +401,13 @@ impl CircuitStep<'_> {
         let voltage_v = mean_open_circuit_v - self.series_ohm * current_a - mean_polarisation_v;
         // The second term equals the mean of v1^2 / R1 over the step (exact solution of the RC pair).
         let loss_w = self.series_ohm * current_a * current_a + (current_a * mean_polarisation_v - stored_w);
+        let rate_per_h = -current_a * 3600.0 * self.battery.per_cell_capacity_1_c;
         BatteryStep {
             state: BatteryState {
                 charge_drawn_c: self.state.charge_drawn_c + current_a * self.step_s,
                 polarisation,
+                recent_charging_per_h: rate_per_h
+                    + (self.state.recent_charging_per_h - rate_per_h) * self.remembered,
                 ..self.state
             },
             current_a: current_a * strings,

@@ -39,7 +39,7 @@ pub struct UsableCapacityTable {
     pub share: Vec<f64>,
 }
 
-fn check_axis(key: &str, axis: &[f64], low: f64, high: f64) -> Result<(), Violation> {
+pub(super) fn check_axis(key: &str, axis: &[f64], low: f64, high: f64) -> Result<(), Violation> {
     if axis.len() < 2 {
         return Err(Violation::new(key, format!("{} values", axis.len()), "must hold at least 2 values"));
     }
@@ -70,6 +70,26 @@ fn check_values(key: &str, values: &[f64], length: usize, low: f64, high: f64) -
     Ok(())
 }
 
+/// Checks a table of so many rows and columns whose values have a range.
+pub(super) fn check_rows(
+    key: &str,
+    table: &[Vec<f64>],
+    (rows, columns): (usize, usize),
+    (low, high): (f64, f64),
+) -> Result<(), Violation> {
+    if table.len() != rows {
+        return Err(Violation::new(
+            key,
+            format!("{} rows", table.len()),
+            format!("must hold {rows} rows, one for each temperature"),
+        ));
+    }
+    for (i, row) in table.iter().enumerate() {
+        check_values(&format!("{key}[{i}]"), row, columns, low, high)?;
+    }
+    Ok(())
+}
+
 impl Validate for OpenCircuitVoltageTable {
     fn validate(&self) -> Result<(), Violation> {
         check_axis("state_of_charge", &self.state_of_charge, 0.0, 1.0)?;
@@ -95,16 +115,7 @@ impl Validate for CircuitTable {
             ("polarisation_capacitance_f", &self.polarisation_capacitance_f, 1.0, 1e8),
         ];
         for (key, table, low, high) in tables {
-            if table.len() != self.temperature_degc.len() {
-                return Err(Violation::new(
-                    key,
-                    format!("{} rows", table.len()),
-                    format!("must hold {} rows, one for each temperature", self.temperature_degc.len()),
-                ));
-            }
-            for (i, row) in table.iter().enumerate() {
-                check_values(&format!("{key}[{i}]"), row, self.state_of_charge.len(), low, high)?;
-            }
+            check_rows(key, table, (self.temperature_degc.len(), self.state_of_charge.len()), (low, high))?;
         }
         Ok(())
     }

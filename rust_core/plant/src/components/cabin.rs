@@ -1,9 +1,12 @@
 //! Cabin: ventilation, panels and cores (paper section 2.2).
 
+use super::cabin_air::CabinAirParameters;
+use super::windscreen::WindscreenParameters;
 use crate::architecture::builder::Builder;
+use crate::architecture::declaration::Level;
 use crate::architecture::flows::{Crossing, Flow};
 use crate::architecture::kind::{Bounds, ComponentKind, Count, Key, Meets, Role};
-use crate::architecture::layout::{CabinLayout, LoopLayout};
+use crate::architecture::layout::{CabinLayout, ExchangerSide, LoopLayout};
 use crate::architecture::ranks;
 use crate::architecture::rows::{ActuatorRow, Purpose};
 use crate::architecture::wiring::{HeatSource, Law};
@@ -53,9 +56,14 @@ fn add_nodes(to: &mut Builder<'_>, member: usize) {
         cooler: None,
         blower_flow: Flow::AUXILIARY,
         solar_flow: Flow::AUXILIARY,
+        solar_soft_flow: Flow::AUXILIARY,
+        solar_hard_flow: Flow::AUXILIARY,
         occupants_flow: Flow::AUXILIARY,
+        evaporator: None,
+        latent_flow: None,
         recirculation_row: 0,
         blower_row: 0,
+        windscreen_row: 0,
     });
 }
 
@@ -69,10 +77,25 @@ fn add_loads(to: &mut Builder<'_>, member: usize) {
 fn add_gains(to: &mut Builder<'_>, member: usize) {
     let prefix = to.prefix(member);
     let column = format!("{prefix}solar_heat_flow_w");
-    to.cabin(member).solar_flow = to.flow(column, "Solar heat into the cabin.", Crossing::Enters);
+    to.cabin(member).solar_flow = to.flow(column, "Solar heat into the cabin air.", Crossing::Enters);
     let column = format!("{prefix}occupant_heat_flow_w");
     to.cabin(member).occupants_flow =
         to.flow(column, "Heat of the occupants into the cabin.", Crossing::Enters);
+    let column = format!("{prefix}solar_soft_furnishings_heat_flow_w");
+    to.cabin(member).solar_soft_flow =
+        to.flow(column, "Solar heat onto the soft furnishings.", Crossing::Enters);
+    let column = format!("{prefix}solar_hard_furnishings_heat_flow_w");
+    to.cabin(member).solar_hard_flow =
+        to.flow(column, "Solar heat onto the hard furnishings.", Crossing::Enters);
+    let place = to.cabin_place(member);
+    let evaporates = |side, level| side == ExchangerSide::Cabin(place) && level == Level::Evaporating;
+    let evaporator = to.layout.exchangers.iter().position(|e| evaporates(e.side, e.level));
+    to.cabin(member).evaporator = evaporator;
+    if to.cabin(member).cooler.is_some() || evaporator.is_some() {
+        let column = format!("{prefix}latent_heat_flow_w");
+        let text = "Heat of the water that condenses on the cooling core, into what cools that.";
+        to.cabin(member).latent_flow = Some(to.flow(column, text, Crossing::Enters));
+    }
 }
 
 /// The exhaust enters at cabin temperature and meets whichever is warmer, ambient (only heat above ambient is "exhaust
@@ -111,9 +134,22 @@ fn add_links(to: &mut Builder<'_>, member: usize) {
 }
 
 fn add_sources(to: &mut Builder<'_>, member: usize) {
-    let CabinLayout { air, blower_flow, solar_flow, occupants_flow, .. } = *to.cabin(member);
-    for flow in [blower_flow, solar_flow, occupants_flow] {
-        to.layout.sources.push(HeatSource { flow, node: air, out: false });
+    let cabin = *to.cabin(member);
+    let CabinLayout { air, soft, hard, .. } = cabin;
+    for (flow, node) in [
+        (cabin.blower_flow, air),
+        (cabin.solar_flow, air),
+        (cabin.occupants_flow, air),
+        (cabin.solar_soft_flow, soft),
+        (cabin.solar_hard_flow, hard),
+    ] {
+        to.layout.sources.push(HeatSource { flow, node, out: false });
+    }
+    if let Some(flow) = cabin.latent_flow {
+        // An evaporator takes all its heat from the air, which gets back what water gave it; coolant gets it from the core.
+        let node =
+            cabin.cooler.map_or(air, |cooler| to.layout.loops[to.layout.branches[cooler].circuit].back);
+        to.layout.sources.push(HeatSource { flow, node, out: false });
     }
 }
 
@@ -166,6 +202,13 @@ parameters! {
         exhaust_recovery_share: f64 = 0.0 .. 0.95,
         /// Sensible heat of one occupant [W].
         occupant_heat_w: f64 = 0.0 .. 300.0,
+        /// Share of the solar heat that warms the furnishings, soft and hard in halves, and not the air [-].
+        solar_to_furnishings_share: f64 = 0.0 .. 1.0,
+        ;
+        /// Its air: water and carbon dioxide.
+        air: CabinAirParameters,
+        /// Its windscreen.
+        windscreen: WindscreenParameters,
     }
 }
 

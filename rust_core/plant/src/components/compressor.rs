@@ -46,8 +46,14 @@ parameters! {
         isentropic_pressure_ratio_loss: f64 = 0.0 .. 2.0,
         /// Extra work with the squared distance of relative speed from half of maximum speed [-].
         isentropic_speed_loss: f64 = 0.0 .. 4.0,
-        /// Efficiency of compressor motor and inverter [-]; the rest leaves to ambient.
+        /// Efficiency of compressor motor and inverter [-].
         electrical_efficiency: f64 = 0.3 .. 1.0,
+        /// Share of the loss of motor and inverter that heats the gas; the rest leaves to ambient [-].
+        loss_to_gas_share: f64 = 0.0 .. 1.0,
+        /// Time constant with which the power comes in after a start, while refrigerant and oil find their places [s]; 0: at once.
+        settling_time_s: f64 = 0.0 .. 300.0,
+        /// Time constant with which that is lost again at rest [s].
+        migration_time_s: f64 = 1.0 .. 3600.0,
         /// Lowest pressure ratio at which the machine compresses [-].
         minimum_pressure_ratio: f64 = 1.05 .. 2.0,
     }
@@ -55,6 +61,9 @@ parameters! {
 
 /// Pressure ratio minus one below which the efficiencies flatten; outside what the machine may do.
 const PRESSURE_RATIO_KNEE: f64 = 0.02;
+
+/// Share from which on a machine counts as settled, after seven time constants.
+const SETTLED_SHARE: f64 = 0.999;
 
 /// Time over which the loss of a start is drawn [s]; a step shorter than this takes its share.
 const START_DURATION_S: f64 = 1.0;
@@ -118,6 +127,8 @@ pub struct CompressorState {
     pub time_in_state_s: f64,
     /// Speed at the end of the last step [rev/s].
     pub speed_rev_s: f64,
+    /// How far refrigerant and oil have found their places since the start [-].
+    pub settled_share: f64,
     /// Part of the start loss that is still to be drawn [J].
     pub start_loss_remaining_j: f64,
     /// Starts so far.
@@ -134,6 +145,7 @@ impl CompressorState {
             running: false,
             time_in_state_s: 86_400.0,
             speed_rev_s: 0.0,
+            settled_share: 0.0,
             start_loss_remaining_j: 0.0,
             starts: 0,
             protection_trips: 0,
@@ -159,6 +171,14 @@ impl CompressorState {
         self.running && self.time_in_state_s < parameters.minimum_on_time_s - TIME_TOLERANCE_S
     }
 
+    /// Share of the demanded power that a machine that turns may take at the end of a step [-].
+    #[must_use]
+    #[inline]
+    pub fn power_share(&self, parameters: &CompressorParameters, step_s: f64) -> f64 {
+        let share = approached(self.settled_share, 1.0, step_s, parameters.settling_time_s);
+        if share < SETTLED_SHARE { share } else { 1.0 }
+    }
+
     /// Highest speed at the end of a step of `step_s` [rev/s].
     ///
     /// A start reaches minimum speed at once. Slowing down is not limited: the demand is a cap.
@@ -179,6 +199,11 @@ impl CompressorState {
         step_s: f64,
     ) -> f64 {
         let running = speed_rev_s.is_some();
+        self.settled_share = if running {
+            self.power_share(parameters, step_s)
+        } else {
+            approached(self.settled_share, 0.0, step_s, parameters.migration_time_s)
+        };
         if running != self.running {
             self.time_in_state_s = 0.0;
             if running {
@@ -199,6 +224,12 @@ impl CompressorState {
         self.start_loss_remaining_j -= drawn_j;
         drawn_j / step_s
     }
+}
+
+/// What is left of the way from one value to another after a time; a time constant of 0 leaves nothing.
+#[inline]
+fn approached(from: f64, to: f64, time_s: f64, time_constant_s: f64) -> f64 {
+    if time_constant_s <= 0.0 { to } else { to + (from - to) * elementary::exp(-time_s / time_constant_s) }
 }
 
 /// Sums of step lengths meet the minimum times within this [s].

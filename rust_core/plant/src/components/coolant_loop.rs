@@ -89,7 +89,11 @@ impl Validate for BranchShares {
         }
         let sum: f64 = self.shares.values().sum();
         if !self.shares.is_empty() && (sum - 1.0).abs() > 1e-9 {
-            return Err(Violation::new("", format!("{sum} in sum"), "the shares must add up to 1"));
+            return Err(Violation::new(
+                "",
+                format!("{} in sum", (sum * 1e9).round() / 1e9),
+                "the shares must add up to 1",
+            ));
         }
         Ok(())
     }

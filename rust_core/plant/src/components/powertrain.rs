@@ -42,6 +42,8 @@ pub struct Powertrain<'a> {
     pub speed_m_s: f64,
     /// Spin loss of the transmission [W].
     pub spin_loss_w: f64,
+    /// Share of its largest force and power that the motor's temperature leaves [-].
+    pub motor_share: f64,
 }
 
 impl Powertrain<'_> {
@@ -59,6 +61,23 @@ impl Powertrain<'_> {
         }
     }
 
+    /// Whether the motor can deliver what driving the wheels with a power takes.
+    #[must_use]
+    #[inline]
+    pub fn within_motor_limits(&self, wheel_power_w: f64, flow: &PowertrainFlow) -> bool {
+        wheel_power_w <= self.largest_force_w()
+            && wheel_power_w + flow.transmission_loss_w <= self.largest_shaft_power_w()
+    }
+
+    /// Wheel power at the motor's largest force [W].
+    fn largest_force_w(&self) -> f64 {
+        self.motor_share * self.motor.maximum_tractive_force_n * self.speed_m_s
+    }
+
+    fn largest_shaft_power_w(&self) -> f64 {
+        self.motor_share * self.motor.maximum_mechanical_power_w
+    }
+
     /// Brakes with `braking_power_w >= 0` at the wheels and recuperates at most `recovery_limit_w` (>= 0).
     ///
     /// What motor and battery cannot take goes to the friction brakes.
@@ -68,6 +87,9 @@ impl Powertrain<'_> {
         let share = self.regeneration.maximum_share;
         let available_w = (braking_power_w * share).min(self.regeneration.maximum_wheel_power_w) * fade;
         let through = 1.0 - self.transmission.mesh_loss_share;
+        let available_w = available_w
+            .min(self.largest_force_w())
+            .min((self.largest_shaft_power_w() + self.spin_loss_w) / through);
         let mut recuperated_w = available_w;
         let mut shaft_w = available_w * through - self.spin_loss_w;
         if shaft_w - self.motor.loss_w(self.speed_m_s, shaft_w) > recovery_limit_w {
@@ -92,6 +114,10 @@ mod tests {
 
     fn with_powertrain<T>(speed_m_s: f64, spin_loss_w: f64, test: impl Fn(Powertrain<'_>) -> T) -> T {
         let motor = MotorParameters {
+            maximum_tractive_force_n: 6e3,
+            maximum_mechanical_power_w: 8e4,
+            derating_start_degc: Celsius(110.0),
+            derating_end_degc: Celsius(150.0),
             constant_loss_w: 150.0,
             speed_loss_w_s_m: 8.0,
             proportional_loss: 0.05,
@@ -119,6 +145,7 @@ mod tests {
             regeneration: &regeneration,
             speed_m_s,
             spin_loss_w,
+            motor_share: 0.8,
         })
     }
 
@@ -142,6 +169,17 @@ mod tests {
             prop_assert!((braking - sum).abs() < 1e-7 * (1.0 + braking));
             prop_assert!(-flow.electrical_power_w <= limit + 1e-7);
             prop_assert!(flow.friction_brake_power_w >= -1e-7);
+        }
+
+        #[test]
+        fn the_motor_brakes_with_at_most_its_force_and_power(
+            braking in 0.0..4e5_f64, speed in 0.0..40.0_f64, spin in 0.0..3000.0_f64,
+        ) {
+            let flow = with_powertrain(speed, spin, |powertrain| powertrain.brake(braking, f64::INFINITY));
+            let by_motor_w = braking - flow.friction_brake_power_w;
+            let shaft_w = flow.motor_loss_w - flow.electrical_power_w;
+            prop_assert!(by_motor_w <= 0.8 * 6e3 * speed + 1e-7);
+            prop_assert!(shaft_w <= 0.8 * 8e4 + 1e-7);
         }
     }
 }

@@ -12,10 +12,17 @@ pub const VEHICLE: Kind = Kind {
     ending: "toml",
     files: embedded::VEHICLES,
     references: &[
-        Reference { path: &["architecture"], kind: &ARCHITECTURE },
-        Reference { path: &["refrigerant"], kind: &REFRIGERANT },
+        Reference { path: &["architecture"], kind: &ARCHITECTURE, brings: &[] },
+        Reference { path: &["refrigerant"], kind: &REFRIGERANT, brings: FLUID_LIMITS },
     ],
 };
+
+/// Limits of a vehicle that belong to its refrigerant.
+pub const FLUID_LIMITS: &[&[&str]] = &[
+    &["refrigeration", "maximum_pressure_bar"],
+    &["refrigeration", "minimum_suction_pressure_bar"],
+    &["refrigeration", "compressor", "maximum_discharge_temperature_degc"],
+];
 
 /// A thermal architecture: `architectures/*.toml`.
 pub const ARCHITECTURE: Kind =

@@ -33,6 +33,9 @@ pub struct Reference {
     pub path: &'static [&'static str],
     /// Kind of the other file.
     pub kind: &'static Kind,
+    /// Keys whose values belong to the other file: where a file names another one than its base does, those of the base do not
+    /// count.
+    pub brings: &'static [&'static [&'static str]],
 }
 
 /// All entries of a list in [`Reference::path`].
@@ -138,6 +141,9 @@ pub fn load<T: DeserializeOwned + Validate>(
 pub fn table(kind: Kind, name: &str, overrides: &[Override]) -> PlantResult<Table> {
     let mut table = merged(kind, name, 0)?;
     for change in overrides {
+        leave_out_brought(kind, &mut table, &Table::from_iter([(change.key.clone(), change.value.clone())]));
+    }
+    for change in overrides {
         set(&mut table, &change.key, change.value.clone())
             .map_err(|message| PlantError::Syntax { file: name.to_owned(), message })?;
     }
@@ -206,7 +212,7 @@ fn merged(kind: Kind, name: &str, depth: usize) -> PlantResult<Table> {
         return Err(syntax("the chain of `base` files is too long or closed".into()));
     }
     let mut table = parsed(kind, name)?;
-    for Reference { path, kind: other } in kind.references {
+    for Reference { path, kind: other, .. } in kind.references {
         if let [section, rest @ ..] = path
             && let Some(value) = table.get_mut(*section)
         {
@@ -218,10 +224,33 @@ fn merged(kind: Kind, name: &str, depth: usize) -> PlantResult<Table> {
         Some(Value::String(base)) => {
             let base = kind.named_by(name, &kind, &base);
             let mut whole = merged(kind, &base, depth + 1).map_err(|error| error.named_by(name))?;
+            leave_out_brought(kind, &mut whole, &table);
             merge(&mut whole, table);
             Ok(whole)
         }
         Some(other) => Err(syntax(format!("`base` is {other}, but must be the name of a {}", kind.word))),
+    }
+}
+
+/// Takes the values out of a base that belong to another file which `changes` replaces by a different one.
+fn leave_out_brought(kind: Kind, base: &mut Table, changes: &Table) {
+    for Reference { path, brings, .. } in kind.references {
+        let [key] = path else { continue };
+        let (Some(Value::String(new)), Some(Value::String(old))) = (changes.get(*key), base.get(*key)) else {
+            continue;
+        };
+        if new.eq_ignore_ascii_case(old) {
+            continue;
+        }
+        for keys in *brings {
+            let Some((last, sections)) = keys.split_last() else { continue };
+            let start = Some(&mut *base);
+            let place =
+                sections.iter().fold(start, |table, section| table?.get_mut(*section)?.as_table_mut());
+            if let Some(table) = place {
+                table.remove(*last);
+            }
+        }
     }
 }
 

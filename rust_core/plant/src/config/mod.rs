@@ -4,6 +4,7 @@ pub mod bounded;
 pub mod initial;
 pub mod kinds;
 pub mod library;
+mod orders;
 mod reading;
 mod validate;
 pub mod vehicle;

@@ -50,6 +50,13 @@ pub trait Validate {
     fn validate(&self) -> Result<(), Violation>;
 }
 
+/// A section that may be absent.
+impl<T: Validate> Validate for Option<T> {
+    fn validate(&self) -> Result<(), Violation> {
+        self.as_ref().map_or(Ok(()), Validate::validate)
+    }
+}
+
 /// A temperature that configuration files give in degC and the plant uses in kelvin.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default, Serialize, Deserialize)]
 #[serde(transparent)]

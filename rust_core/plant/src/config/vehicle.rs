@@ -1,8 +1,8 @@
 //! One complete vehicle: its architecture, and a section of numbers for each part of it.
 
-use super::kinds::{ARCHITECTURE, VEHICLE};
+use super::kinds::{ARCHITECTURE, FLUID_LIMITS, VEHICLE};
 use super::library::{self, Override};
-use super::{Validate, Violation, check_range, deserialized};
+use super::{Validate, Violation, check_range, deserialized, orders};
 use crate::architecture::declaration::{Declaration, MemberKind, VEHICLE_SECTIONS};
 use crate::architecture::flaw::{Flaw, among};
 use crate::architecture::flows::FlowRow;
@@ -23,6 +23,7 @@ use crate::components::thermal_mass::ThermalMass;
 use crate::components::thermal_switch::SwitchParameters;
 use crate::components::transmission::TransmissionParameters;
 use crate::error::{PlantError, PlantResult};
+use crate::media::refrigerant::{self, RefrigerantTable};
 use crate::parameters;
 use crate::signals::SignalTable;
 use std::sync::{Arc, OnceLock};
@@ -30,6 +31,9 @@ use toml::{Table, Value};
 
 /// Architecture of a vehicle that names none.
 const DEFAULT_ARCHITECTURE: &str = "jeffs2019";
+
+/// Part of a front-end exchanger's section: its air, where it shares that with no other.
+const AIR: &str = "air";
 
 /// Conductances that an exchanger of the refrigerant loop may have [W/K].
 const EXCHANGER_UA_RANGE_W_K: (f64, f64) = (10.0, 10_000.0);
@@ -65,8 +69,8 @@ pub struct VehicleParameters {
     pub stores: Vec<ThermalMass>,
     /// Front-end exchangers.
     pub front_ends: Vec<AmbientExchangerParameters>,
-    /// Air that a front-end exchanger shares with others.
-    pub air_streams: Vec<Option<AirStreamParameters>>,
+    /// Air of each front-end exchanger; the same for those that share it.
+    pub air_streams: Vec<AirStreamParameters>,
     /// Plates by the position of their member.
     pub plates: Vec<Option<LiquidPlateParameters>>,
     /// Refrigerant loop.
@@ -186,11 +190,12 @@ impl Reader<'_> {
         };
         let layout = self.architecture(&architecture_name)?;
         let cabins = self.cabins(&layout)?;
-        let (refrigeration, exchanger_ua_w_k) = self.refrigeration(&layout)?;
+        let refrigerant = self.refrigerant(&layout)?;
+        let (refrigeration, exchanger_ua_w_k) = self.refrigeration(&layout, refrigerant.as_deref())?;
         let parameters = VehicleParameters {
             description,
             architecture: architecture_name,
-            refrigerant: if layout.refrigerates() { Some(self.text("refrigerant")?) } else { None },
+            refrigerant,
             body: self.section("body")?,
             regeneration: self.section("regeneration")?,
             battery: self.section("battery")?,
@@ -205,8 +210,8 @@ impl Reader<'_> {
                 .map(|heater| self.section(&heater.name))
                 .collect::<PlantResult<_>>()?,
             stores: self.passive_masses(&layout)?,
-            front_ends: self.each(&layout, MemberKind::FrontEnd)?,
             air_streams: self.air_streams(&layout)?,
+            front_ends: self.each(&layout, MemberKind::FrontEnd)?,
             plates: self.plates(&layout)?,
             refrigeration,
             exchanger_ua_w_k,
@@ -344,19 +349,34 @@ impl Reader<'_> {
         Ok(cabins)
     }
 
-    fn air_streams(&mut self, layout: &Layout) -> PlantResult<Vec<Option<AirStreamParameters>>> {
+    /// Air of each front-end exchanger: in the section of the stream that it shares, or in a part `air` of its own section.
+    fn air_streams(&mut self, layout: &Layout) -> PlantResult<Vec<AirStreamParameters>> {
         let mut read: Vec<(String, AirStreamParameters)> = Vec::new();
         let mut streams = Vec::with_capacity(layout.front_ends.len());
         for front_end in &layout.front_ends {
+            let section = &layout.members[front_end.member].section;
+            let parts = self.table.get_mut(section).and_then(Value::as_table_mut);
+            let own = parts.and_then(|parts| parts.remove(AIR));
+            let path = format!("{section}.{AIR}");
             let Some(name) = &front_end.stream else {
-                streams.push(None);
+                let message = format!("`{path}` is missing");
+                let own = own.ok_or_else(|| PlantError::Syntax { file: self.file.to_owned(), message })?;
+                let air: AirStreamParameters = deserialized(self.file, &path, own)?;
+                air.validate().map_err(|violation| violation.within(&path).in_file(self.file))?;
+                streams.push(air);
                 continue;
             };
+            // What only the base has is of no use here.
+            let given = self.own.get(section).and_then(|section| section.get(AIR));
+            if given.is_some() {
+                let allowed = format!("must stand in `{name}`, the air that `{section}` shares");
+                return Err(Violation::new(path, "given", allowed).in_file(self.file));
+            }
             if !read.iter().any(|(known, _)| known == name) {
                 let parameters = self.section(name)?;
                 read.push((name.clone(), parameters));
             }
-            streams.push(read.iter().find(|(known, _)| known == name).map(|(_, stream)| stream.clone()));
+            streams.extend(read.iter().find(|(known, _)| known == name).map(|(_, stream)| stream.clone()));
         }
         Ok(streams)
     }
@@ -369,14 +389,52 @@ impl Reader<'_> {
         layout.members.iter().map(plate).collect()
     }
 
-    fn refrigeration(&mut self, layout: &Layout) -> PlantResult<(Option<RefrigerationParameters>, Vec<f64>)> {
+    /// Name or path of the refrigerant, if the architecture has use for one.
+    fn refrigerant(&mut self, layout: &Layout) -> PlantResult<Option<String>> {
         if !layout.refrigerates() {
-            return Ok((None, Vec::new()));
+            return Ok(None);
         }
+        let name = self.text("refrigerant")?;
+        match refrigerant::refusal(&name) {
+            None => Ok(Some(name)),
+            Some(allowed) => {
+                Err(Violation::new("refrigerant", format!("`{name}`"), allowed).in_file(self.file))
+            }
+        }
+    }
+
+    /// Gives the section those limits of the fluid that it does not have itself.
+    fn add_fluid_limits(&self, section: &mut Table, refrigerant: &str) -> PlantResult<()> {
+        let holds = |keys: &[&str]| {
+            let (last, sections) = keys.split_last()?;
+            let inner = sections.iter().try_fold(&*section, |table, key| table.get(*key)?.as_table());
+            inner?.get(*last)
+        };
+        let Some(keys) = FLUID_LIMITS.iter().find(|keys| holds(&keys[1..]).is_none()) else { return Ok(()) };
+        let limits = RefrigerantTable::limits_of(refrigerant).map_err(|error| error.named_by(self.file))?;
+        let Some(limits) = limits else {
+            let allowed = format!(
+                "must be given: the table of refrigerant `{refrigerant}` has no limits in its header (make_table.py writes them)"
+            );
+            return Err(Violation::new(keys.join("."), "missing", allowed).in_file(self.file));
+        };
+        let mut whole = limits.section();
+        library::merge(&mut whole, std::mem::take(section));
+        *section = whole;
+        Ok(())
+    }
+
+    fn refrigeration(
+        &mut self,
+        layout: &Layout,
+        refrigerant: Option<&str>,
+    ) -> PlantResult<(Option<RefrigerationParameters>, Vec<f64>)> {
+        let Some(refrigerant) = refrigerant else { return Ok((None, Vec::new())) };
         let value = library::take(self.file, &mut self.table, "refrigeration")?;
         let Value::Table(mut section) = value else {
             return Err(Violation::new("refrigeration", value, "must be a section").in_file(self.file));
         };
+        self.add_fluid_limits(&mut section, refrigerant)?;
         let mut conductances_w_k = Vec::with_capacity(layout.exchangers.len());
         for exchanger in &layout.exchangers {
             let key = format!("{}_ua_w_k", exchanger.name);
@@ -428,12 +486,20 @@ fn architecture_name_of(parameters: &VehicleParameters) -> String {
 impl VehicleParameters {
     /// What single ranges cannot tell.
     fn check(&self) -> Result<(), Violation> {
+        orders::check(self)?;
         let switch = &self.controls.thermal_switch;
         if switch.opening_difference_k > switch.closing_difference_k {
             return Err(Violation::new(
                 "controls.thermal_switch.opening_difference_k",
                 switch.opening_difference_k,
                 format!("must not exceed closing_difference_k ({})", switch.closing_difference_k),
+            ));
+        }
+        if self.motor.derating_end_degc <= self.motor.derating_start_degc {
+            return Err(Violation::new(
+                "motor.derating_end_degc",
+                self.motor.derating_end_degc.0,
+                format!("must be above derating_start_degc ({})", self.motor.derating_start_degc.0),
             ));
         }
         for (circuit, parameters) in self.layout.loops.iter().zip(&self.loops) {
@@ -452,7 +518,14 @@ impl VehicleParameters {
                 return Err(Violation::new(format!("{}.{key}", circuit.name), "missing", allowed));
             }
         }
-        self.check_air_streams()?;
+        let battery = &self.battery;
+        for (section, limit) in [
+            ("battery.charge_limit", &battery.charge_limit),
+            ("battery.discharge_limit", &battery.discharge_limit),
+        ] {
+            let checked = limit.check_memory(battery.rate_memory_s);
+            checked.map_err(|violation| violation.within(section))?;
+        }
         let shared = self.cabins[0].solar_share.min(self.cabins[0].occupant_share);
         if shared < 0.0 {
             let allowed =
@@ -466,33 +539,6 @@ impl VehicleParameters {
         for branch in self.layout.branches.iter().filter(|branch| matches!(branch.side, BranchSide::Plate(_)))
         {
             debug_assert!(self.plates[branch.member].is_some(), "each plate has a section");
-        }
-        Ok(())
-    }
-
-    /// Shared air takes up what its exchangers pass: with less of it, it would leave warmer than the coolant.
-    fn check_air_streams(&self) -> Result<(), Violation> {
-        let streams = self.layout.front_ends.iter().zip(&self.front_ends).zip(&self.air_streams);
-        for ((layout, front_end), stream) in streams {
-            let (Some(stream), Some(section)) = (stream, &layout.stream) else { continue };
-            let name = &self.layout.members[layout.member].name;
-            for (key, rate, largest) in [
-                (
-                    "capacity_rate_w_k",
-                    stream.capacity_rate_w_k,
-                    front_end.radiator_ua_w_k.max(front_end.source_ua_w_k),
-                ),
-                (
-                    "capacity_rate_per_speed_w_s_k_m",
-                    stream.capacity_rate_per_speed_w_s_k_m,
-                    front_end.radiator_ua_per_speed_w_s_k_m.max(front_end.source_ua_per_speed_w_s_k_m),
-                ),
-            ] {
-                if rate < largest {
-                    let allowed = format!("must be at least the conductance of `{name}` ({largest})");
-                    return Err(Violation::new(format!("{section}.{key}"), rate, allowed));
-                }
-            }
         }
         Ok(())
     }

@@ -2,11 +2,13 @@
 //!
 //! `configs/refrigerants/make_table.py` writes the tables; all values are SI, temperatures in kelvin.
 
+use super::fluid_limits::{FluidLimits, supercritical_degc};
 use crate::config::kinds::REFRIGERANT;
-use crate::config::library;
+use crate::config::{ZERO_CELSIUS_K, library};
 use crate::error::{PlantError, PlantResult};
 use crate::numerics::cubic_table::CubicTable;
-use crate::numerics::dual::Real;
+use crate::numerics::dual::{Dual, Real};
+use crate::numerics::elementary;
 
 /// Columns of the tables, without the temperature.
 const COLUMN_NAMES: [&str; COLUMNS] = [
@@ -120,32 +122,130 @@ impl<T: Real> CondensingIsobar<T> {
         let wet = self.dew_enthalpy_j_kg + self.temperature_k * excess;
         if excess.value() > 0.0 { wet + excess * excess * polynomial(&self.vapour, excess) } else { wet }
     }
+
+    /// Enthalpy at this pressure and an entropy that may be far above the dew point [J/kg]; linear beyond `range_j_kg_k` above it,
+    /// which is as far as the table reaches.
+    pub fn enthalpy_at_any_entropy_j_kg(&self, entropy_j_kg_k: T, range_j_kg_k: f64) -> T {
+        let beyond = entropy_j_kg_k - self.dew_entropy_j_kg_k - range_j_kg_k;
+        if beyond.value() <= 0.0 {
+            return self.enthalpy_at_entropy_j_kg(entropy_j_kg_k);
+        }
+        let edge_j_kg = self.enthalpy_at_entropy_j_kg(self.dew_entropy_j_kg_k + range_j_kg_k);
+        edge_j_kg + self.slope_k(range_j_kg_k) * beyond
+    }
+
+    /// Entropy at this pressure and the given enthalpy [J/(kg K)], the inverse of [`Self::enthalpy_at_any_entropy_j_kg`].
+    pub fn entropy_at_enthalpy_j_kg_k(&self, enthalpy_j_kg: T, range_j_kg_k: f64) -> T {
+        let excess = enthalpy_j_kg - self.dew_enthalpy_j_kg;
+        if excess.value() <= 0.0 {
+            return self.dew_entropy_j_kg_k + excess / self.temperature_k;
+        }
+        let edge_j_kg = self.enthalpy_at_entropy_j_kg(self.dew_entropy_j_kg_k + range_j_kg_k);
+        if enthalpy_j_kg.value() >= edge_j_kg.value() {
+            let beyond = (enthalpy_j_kg - edge_j_kg) / self.slope_k(range_j_kg_k);
+            return self.dew_entropy_j_kg_k + range_j_kg_k + beyond;
+        }
+        let [a, b, c] = self.vapour.map(Real::value);
+        let temperature_k = self.temperature_k.value();
+        let rise = |x: f64| x * (temperature_k + x * (a + x * (b + x * c)));
+        let slope = |x: f64| temperature_k + x * (2.0 * a + x * (3.0 * b + x * 4.0 * c));
+        let mut entropy = excess.value() / temperature_k;
+        for _ in 0..INVERSE_ITERATIONS {
+            entropy += (excess.value() - rise(entropy)) / slope(entropy);
+        }
+        // The last step of Newton's method carries the derivatives.
+        let constant = T::constant(entropy);
+        let reached =
+            constant * self.temperature_k + constant * constant * polynomial(&self.vapour, constant);
+        self.dew_entropy_j_kg_k + (excess - reached) / slope(entropy) + entropy
+    }
+
+    /// Rise of enthalpy with entropy at an entropy above the dew point [K].
+    fn slope_k(&self, excess_j_kg_k: f64) -> T {
+        let [a, b, c] = self.vapour;
+        let x = excess_j_kg_k;
+        self.temperature_k + (a * 2.0 + (b * 3.0 + c * (4.0 * x)) * x) * x
+    }
 }
+
+/// Superheat that the polynomials cover [K], and the least entropy above the dew point [J/(kg K)]: as in `make_table.py`.
+const LARGEST_SATURATION_DISTANCE_K: f64 = 10.0;
+const LEAST_ENTROPY_RANGE_J_KG_K: f64 = 180.0;
+
+/// Steps of Newton's method, beyond which round-off is all that is left.
+const INVERSE_ITERATIONS: usize = 4;
+
+/// Change of a liquid's enthalpy with pressure at constant temperature over saturation temperature [J/(kg Pa)].
+#[derive(Debug, Clone, PartialEq)]
+pub struct LiquidUnderPressure(CubicTable<1>);
 
 /// Property table of one refrigerant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RefrigerantTable {
     name: String,
     table: CubicTable<COLUMNS>,
+    limits: Option<FluidLimits>,
+}
+
+/// Lowest temperature at which a fluid must be able to condense [degC]; the table of one that cannot ends below, near its
+/// critical point.
+const LEAST_CONDENSING_DEGC: f64 = 50.0;
+
+/// Columns that rise with saturation temperature, up to their values near the critical point.
+const RISING: [&str; 3] = ["pressure_pa", "vapour_density_0", "liquid_enthalpy_0"];
+
+/// Why there is no refrigerant of a name, as "must be ..."; `None` where there is one, or it is the path of a table.
+#[must_use]
+pub fn refusal(name: &str) -> Option<String> {
+    let known = library::names(REFRIGERANT);
+    if known.iter().any(|known| known.eq_ignore_ascii_case(name)) || name.ends_with(".csv") {
+        return None;
+    }
+    let others = format!("{}, or the path of a .csv file", known.join(", "));
+    Some(match supercritical_degc(name) {
+        Some(degc) => format!(
+            "must be a fluid that condenses below its critical point, which this one has at {degc} degC: supercritical \
+             cycles are not modelled; one of {others}"
+        ),
+        None => format!("must be one of {others}"),
+    })
 }
 
 impl RefrigerantTable {
     /// Loads a refrigerant by name, in upper or lower case, or by the path of its table.
     ///
     /// # Errors
-    /// No table of this name, or a file that is none.
+    /// No table of this name, a fluid that would be supercritical, or a file that is no table.
     pub fn load(name: &str) -> PlantResult<Self> {
+        Self::from_csv(name, &Self::text(name)?)
+    }
+
+    /// Critical point and usual limits of a refrigerant by name or path; `None` where its table gives none.
+    ///
+    /// # Errors
+    /// As [`RefrigerantTable::load`], as far as the header is concerned.
+    pub fn limits_of(name: &str) -> PlantResult<Option<FluidLimits>> {
+        FluidLimits::from_table(&file_word(name), &Self::text(name)?)
+    }
+
+    fn text(name: &str) -> PlantResult<String> {
+        if let Some(allowed) = refusal(name) {
+            let value = format!("`{name}`");
+            return Err(PlantError::InvalidArgument { what: "refrigerant".to_owned(), value, allowed });
+        }
         let same = |(known, _): &&(&'static str, _)| known.eq_ignore_ascii_case(name);
         let known = REFRIGERANT.files.iter().find(same).map_or(name, |(known, _)| known);
-        Self::from_csv(name, &library::text(REFRIGERANT, known)?)
+        library::text(REFRIGERANT, known)
     }
 
     /// Reads a table as `make_table.py` writes it.
     ///
     /// # Errors
-    /// Other columns, a field that is no number, a temperature grid that is not uniform.
+    /// Other columns, a field that is no number, a temperature grid that is not uniform, a property that does not rise with
+    /// temperature, a fluid that would be supercritical.
     pub fn from_csv(name: &str, text: &str) -> PlantResult<Self> {
-        let fault = |message: String| PlantError::Syntax { file: format!("refrigerant {name}"), message };
+        let limits = FluidLimits::from_table(&file_word(name), text)?;
+        let fault = |message: String| PlantError::Syntax { file: file_word(name), message };
         let mut lines =
             text.lines().enumerate().filter(|(_, line)| !line.starts_with('#') && !line.is_empty());
         let (_, header) = lines.next().ok_or_else(|| fault("the table is empty".to_owned()))?;
@@ -153,7 +253,7 @@ impl RefrigerantTable {
         if !header.split(',').map(str::trim).eq(expected()) {
             return Err(fault(format!("columns must be {}", expected().collect::<Vec<_>>().join(","))));
         }
-        let (mut grid, mut rows) = (Vec::new(), Vec::new());
+        let (mut grid, mut rows, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
         for (number, line) in lines {
             let bad = || fault(format!("line {} does not hold {} finite numbers", number + 1, COLUMNS + 1));
             let mut row = [0.0; COLUMNS + 1];
@@ -167,10 +267,25 @@ impl RefrigerantTable {
             }
             grid.push(row[0]);
             rows.push(std::array::from_fn(|k| row[k + 1]));
+            numbers.push(number + 1);
         }
+        check_rows(&rows, &numbers).map_err(fault)?;
         let table = CubicTable::new(&grid, &rows)
             .map_err(|_| fault("temperature_k must rise in equal steps, at least four rows".to_owned()))?;
-        Ok(Self { name: name.to_owned(), table })
+        let highest_degc = table.last() - ZERO_CELSIUS_K;
+        if highest_degc < LEAST_CONDENSING_DEGC {
+            return Err(fault(format!(
+                "temperature_k ends at {highest_degc:.1} degC, but must reach {LEAST_CONDENSING_DEGC} degC: a heat pump \
+                 with a fluid that cannot condense there is supercritical"
+            )));
+        }
+        Ok(Self { name: name.to_owned(), table, limits })
+    }
+
+    /// Critical point and usual limits, where the table gives them.
+    #[must_use]
+    pub fn limits(&self) -> Option<&FluidLimits> {
+        self.limits.as_ref()
     }
 
     /// Name of the refrigerant.
@@ -211,6 +326,65 @@ impl RefrigerantTable {
             }
         }
         0.5 * (low + high)
+    }
+
+    /// Saturation temperature at a pressure within the table, with its derivatives [K]; `guess_k` is near it.
+    pub fn saturation_near_k<T: Real>(&self, pressure_pa: T, guess_k: f64) -> T {
+        let at = |temperature_k: f64| self.saturation_pressure_pa(Dual::variable(temperature_k));
+        let mut temperature_k = guess_k.clamp(self.table.first(), self.table.last());
+        for _ in 0..INVERSE_ITERATIONS {
+            let pressure = at(temperature_k);
+            // The logarithm of pressure is nearly a straight line over the reciprocal of temperature.
+            let change = elementary::ln(pressure_pa.value() / pressure.value) * pressure.value
+                / (pressure.gradient * temperature_k * temperature_k);
+            temperature_k =
+                (temperature_k.recip() - change).recip().clamp(self.table.first(), self.table.last());
+        }
+        let pressure = at(temperature_k);
+        (pressure_pa - pressure.value) / pressure.gradient + temperature_k
+    }
+
+    /// Entropy above the dew point as far as the polynomials of all isobars reach [J/(kg K)], by the rule of `make_table.py`.
+    #[must_use]
+    pub fn entropy_range_j_kg_k(&self) -> f64 {
+        let lowest = self.suction_state(self.table.first(), LARGEST_SATURATION_DISTANCE_K).entropy_j_kg_k;
+        let highest = self.condensing_isobar(self.table.last()).dew_entropy_j_kg_k;
+        (lowest - highest).max(LEAST_ENTROPY_RANGE_J_KG_K)
+    }
+
+    /// What pressure adds to the enthalpy of liquid.
+    ///
+    /// Along saturation `dh/dT = c_p + (dh/dp)_T dp/dT`, and `c_p` is the table's first coefficient of subcooling.
+    #[must_use]
+    pub fn liquid_under_pressure(&self) -> LiquidUnderPressure {
+        let nodes = self.table.nodes();
+        let slope = |temperature_k: &f64| {
+            let [pressure, enthalpy, per_subcooling] =
+                self.table.evaluate::<_, PRESSURE, 3>(Dual::variable(*temperature_k));
+            [(enthalpy.gradient + per_subcooling.value) / pressure.gradient]
+        };
+        let rows: Vec<[f64; 1]> = nodes.iter().map(slope).collect();
+        LiquidUnderPressure(CubicTable::new(&nodes, &rows).expect("the grid of a table that was built"))
+    }
+
+    /// Enthalpy of liquid at a temperature and a pressure above that of saturation there [J/kg].
+    pub fn liquid_at_pressure_j_kg<T: Real>(
+        &self,
+        liquid: &LiquidUnderPressure,
+        temperature_k: T,
+        pressure_pa: T,
+    ) -> T {
+        let alone = temperature_k.alone();
+        let [saturation_pa, enthalpy_j_kg] =
+            self.table.evaluate::<_, PRESSURE, 2>(alone).map(|value| temperature_k.then(value));
+        let [slope] = liquid.0.evaluate::<_, 0, 1>(alone).map(|value| temperature_k.then(value));
+        enthalpy_j_kg + slope * (pressure_pa - saturation_pa)
+    }
+
+    /// Enthalpy of vapour `superheat_k` above saturation [J/kg].
+    pub fn superheated_enthalpy_j_kg<T: Real>(&self, saturation_k: T, superheat_k: T) -> T {
+        let coefficients = self.table.evaluate::<_, 0, 4>(saturation_k.alone());
+        polynomial(&coefficients.map(|coefficient| saturation_k.then(coefficient)), superheat_k)
     }
 
     /// Vapour that leaves the evaporator.
@@ -269,6 +443,49 @@ impl RefrigerantTable {
     }
 }
 
+/// What an error says of a table: that of a built-in fluid has no file of its own.
+fn file_word(name: &str) -> String {
+    format!("refrigerant {name}")
+}
+
+/// Checks what no fluid contradicts: positive pressures, densities and heats of evaporation; what must rise does.
+fn check_rows(rows: &[[f64; COLUMNS]], numbers: &[usize]) -> Result<(), String> {
+    let column = |name: &str| COLUMN_NAMES.iter().position(|known| *known == name).expect("a column");
+    let (dew, liquid, range) = (column("dew_enthalpy"), column("liquid_enthalpy_0"), column("isobar_range"));
+    for (place, (row, number)) in rows.iter().zip(numbers).enumerate() {
+        let fault = |name: &str, value: f64, allowed: &str| {
+            Err(format!("line {number}: `{name}` is {value}, but {allowed}"))
+        };
+        for name in ["pressure_pa", "vapour_density_0"] {
+            if row[column(name)] <= 0.0 {
+                return fault(name, row[column(name)], "must be above 0");
+            }
+        }
+        if row[dew] <= row[liquid] {
+            return fault(
+                "dew_enthalpy",
+                row[dew],
+                &format!("must be above liquid_enthalpy_0 ({})", row[liquid]),
+            );
+        }
+        if row[range] <= 0.0 {
+            return fault("isobar_range", row[range], "must be above 0");
+        }
+        let Some(before) = place.checked_sub(1).map(|last| &rows[last]) else { continue };
+        for name in RISING {
+            let (value, last) = (row[column(name)], before[column(name)]);
+            if value <= last {
+                return fault(
+                    name,
+                    value,
+                    &format!("must rise with temperature_k; the row before has {last}"),
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
 /// `c[0] + c[1] x + ...`
 #[inline]
 fn polynomial<T: Real>(coefficients: &[T], x: T) -> T {
@@ -292,6 +509,21 @@ mod tests {
         Ok(())
     }
 
+    /// The table of R290 without its header, with rows changed.
+    fn r290(change: impl Fn(&mut [f64], usize)) -> String {
+        let text = library::text(REFRIGERANT, "r290").expect("built in");
+        let mut lines: Vec<String> =
+            text.lines().filter(|line| !line.starts_with("#:")).map(str::to_owned).collect();
+        let first =
+            lines.iter().position(|line| line.starts_with(|c: char| c.is_ascii_digit())).expect("rows");
+        for (place, line) in lines[first..].iter_mut().enumerate() {
+            let mut row: Vec<f64> = line.split(',').map(|field| field.parse().expect("a number")).collect();
+            change(&mut row, place);
+            *line = row.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        }
+        lines.join("\n")
+    }
+
     #[test]
     fn faulty_tables_are_refused_with_the_reason() {
         let header = format!("temperature_k,{}", COLUMN_NAMES.join(","));
@@ -300,6 +532,31 @@ mod tests {
             ("temperature_k,b".to_owned(), "columns must be"),
             (format!("{header}\n1,2"), "line 2"),
             (header, "four rows"),
+            (
+                r290(|row, place| {
+                    if place == 40 {
+                        row[13] = 1e3
+                    }
+                }),
+                "line 53: `pressure_pa` is 1000, but must rise",
+            ),
+            (
+                r290(|row, place| {
+                    if place == 0 {
+                        row[5] = -1.0
+                    }
+                }),
+                "`vapour_density_0` is -1, but must be above 0",
+            ),
+            (
+                r290(|row, place| {
+                    if place == 3 {
+                        row[20] = 0.0
+                    }
+                }),
+                "`dew_enthalpy` is 0, but must be above liquid",
+            ),
+            (r290(|row, _| row[0] -= 60.0), "temperature_k ends at 29"),
         ] {
             let message = RefrigerantTable::from_csv("x", &text).expect_err("a faulty table").to_string();
             assert!(message.contains(reason), "{message}");
@@ -320,6 +577,13 @@ mod tests {
         assert_eq!(pressure_pa("R134A"), pressure_pa("r134a"));
         assert_ne!(pressure_pa("R134a"), pressure_pa(path));
         let message = RefrigerantTable::load("R744").expect_err("none").to_string();
-        assert!(["R744", "r134a", "r1234yf", ".csv"].iter().all(|part| message.contains(part)), "{message}");
+        assert!(
+            ["R744", "31 degC", "supercritical", "r134a", "r152a", ".csv"]
+                .iter()
+                .all(|part| message.contains(part)),
+            "{message}"
+        );
+        let message = RefrigerantTable::load("R999").expect_err("none").to_string();
+        assert!(["R999", "r134a", "r290", ".csv"].iter().all(|part| message.contains(part)), "{message}");
     }
 }

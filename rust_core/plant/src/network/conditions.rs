@@ -58,12 +58,10 @@ pub fn state(law: Law, now: &Conditions<'_>, constants: &Constants) -> LinkState
         Law::Advection(circuit) => LinkState::conductance(now.rates_w_k[at(circuit)]),
         Law::Hose(circuit) => LinkState::to_fixed(constants.half_hoses_w_k[at(circuit)], now.ambient_k),
         Law::Branch(branch) => LinkState::conductance(now.branches_w_k[at(branch)]),
-        Law::BranchToAmbient(branch) => LinkState::to_fixed(now.branches_w_k[at(branch)], now.ambient_k),
-        Law::BranchFromAmbient(branch) => LinkState::from_fixed(now.branches_w_k[at(branch)], now.ambient_k),
-        Law::BranchToStream(branch, end) => {
+        Law::BranchToAir(branch, end) => {
             LinkState::to_fixed(now.branches_w_k[at(branch)], now.front_end_air_k[at(end)])
         }
-        Law::BranchFromStream(branch, end) => {
+        Law::BranchFromAir(branch, end) => {
             LinkState::from_fixed(now.branches_w_k[at(branch)], now.front_end_air_k[at(end)])
         }
         // Cabin cores see a mixture of fresh and recirculated air.

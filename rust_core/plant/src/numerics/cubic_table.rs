@@ -67,6 +67,13 @@ impl<const COLUMNS: usize> CubicTable<COLUMNS> {
         self.last
     }
 
+    /// All nodes.
+    #[must_use]
+    pub fn nodes(&self) -> Vec<f64> {
+        let count = self.intervals.len();
+        (0..=count).map(|k| self.first + (self.last - self.first) * k as f64 / count as f64).collect()
+    }
+
     /// The columns `START .. START + LENGTH` at `x`.
     #[inline]
     pub fn evaluate<T: Real, const START: usize, const LENGTH: usize>(&self, x: T) -> [T; LENGTH] {

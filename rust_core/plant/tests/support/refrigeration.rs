@@ -3,6 +3,7 @@
 use hp_plant::circuits::refrigeration_cycle::RefrigerationCycle;
 use hp_plant::circuits::refrigeration_cycle::RefrigerationParameters;
 use hp_plant::circuits::refrigeration_loop::{LoopBoundary, SupplyLimit};
+use hp_plant::circuits::vapour_injection::{EconomiserParameters, InjectionParameters};
 use hp_plant::components::compressor::CompressorParameters;
 use hp_plant::components::heat_exchanger::inlet_conductance_w_k;
 use hp_plant::media::refrigerant::RefrigerantTable;
@@ -37,12 +38,24 @@ pub fn parameters() -> RefrigerationParameters {
             isentropic_pressure_ratio_loss: 0.35,
             isentropic_speed_loss: 0.6,
             electrical_efficiency: 0.9,
+            loss_to_gas_share: 0.0,
+            settling_time_s: 0.0,
+            migration_time_s: 120.0,
             minimum_pressure_ratio: 1.1,
         },
+        injection: None,
     }
 }
 
+/// Vapour injection from an economiser or a flash tank.
+#[allow(dead_code, reason = "not every user of this file needs it")]
+pub fn injection(economiser: bool) -> InjectionParameters {
+    let exchanger = EconomiserParameters { effectiveness: 0.85, superheat_k: 5.0 };
+    InjectionParameters { pressure_position: 0.5, economiser: economiser.then_some(exchanger) }
+}
+
 /// The test loop with R134a.
+#[allow(dead_code, reason = "not every user of this file needs it")]
 pub fn cycle() -> RefrigerationCycle {
     let table = RefrigerantTable::load("R134a").expect("R134a is built in");
     RefrigerationCycle::new(parameters(), table).expect("the parameters fit the table")

@@ -38,6 +38,8 @@ parameters! {
         chiller_flow_kg_s: f64 = 0.001 .. 5.0,
         /// Constant blower level [-].
         blower_level: f64 = 0.0 .. 1.0,
+        /// Blower level while cooling [-].
+        cooling_blower_level: f64 = 0.0 .. 1.0,
         /// Recirculated share while heating [-] (paper: ambient air only, 0).
         heating_recirculation: f64 = 0.0 .. 0.95,
         /// Recirculated share while cooling [-] (ours).
@@ -193,7 +195,11 @@ impl RuleBased for Hpcu {
         self.roles.allow_heaters(heats, demand);
         self.trim_requests(state, memory, mode, demand);
         let (parameters, lack_k) = (&self.parameters, self.cabin_error_k(state, mode));
-        self.roles.blow(parameters.options.blower_level(mode, parameters.blower_level, lack_k), demand);
+        self.roles.blow(
+            parameters.options.blower_level(mode, self.constant_settings().blower_level(mode), lack_k),
+            demand,
+        );
+        parameters.options.mind_air(&self.roles, state, demand);
         if let Some(row) = self.roles.compressor_row {
             demand[row] = self.compressor_power_w(plant, state, memory, mode);
         }

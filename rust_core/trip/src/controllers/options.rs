@@ -1,9 +1,12 @@
 //! Options that cars of today have and the paper's rules have not, for any rule set: heat pump before PTC, cabin before
-//! battery, blower by need. All of them pure functions of what is measured; zeros switch them off.
+//! battery, blower by need, recirculation by humidity and carbon dioxide, air at the windscreen by fog. All of them pure functions of what is measured; zeros switch them off.
 
 use super::rule_based::CabinMode;
+use crate::roles::Roles;
+use hp_plant::command::Demand;
 use hp_plant::config::Celsius;
 use hp_plant::parameters;
+use hp_plant::state::State;
 
 parameters! {
     /// Options of today's cars, table `[options]` of a controller file; without the table, or with zeros, none of them acts.
@@ -23,6 +26,21 @@ parameters! {
         cooling_blower_band_k: f64 = 0.0 .. 30.0,
         /// Blower level at the cabin target, which brings the fresh air that occupants need [-].
         least_blower_level: f64 = 0.0 .. 1.0,
+        /// Recirculation by humidity: fog margin of the windscreen up to which there is fresh air only [K].
+        #[serde(default)]
+        fresh_below_fog_margin_k: f64 = 0.0 .. 20.0,
+        /// How far above that the whole recirculated share is allowed; 0: recirculation does not look at fog [K].
+        #[serde(default)]
+        recirculation_fog_band_k: f64 = 0.0 .. 20.0,
+        /// Recirculation by carbon dioxide: from here on there is fresh air only [ppm].
+        #[serde(default)]
+        fresh_above_co2_ppm: f64 = 0.0 .. 10000.0,
+        /// How far below that the whole recirculated share is allowed; 0: recirculation does not look at it [ppm].
+        #[serde(default)]
+        recirculation_co2_band_ppm: f64 = 0.0 .. 10000.0,
+        /// Outlets by fog risk: fog margin below which air is blown at the windscreen, all of it at none; 0: never [K].
+        #[serde(default)]
+        windscreen_below_fog_margin_k: f64 = 0.0 .. 20.0,
     }
 }
 
@@ -68,6 +86,49 @@ impl Options {
     }
 }
 
+/// Of a cabin's air, what limits recirculation and calls for air at the windscreen.
+impl Options {
+    /// Share of the recirculation that fog and carbon dioxide allow [-].
+    #[must_use]
+    pub fn recirculation_share(&self, fog_margin_k: f64, co2_ppm: f64) -> f64 {
+        let within = |room: f64, band: f64| if band > 0.0 { (room / band).clamp(0.0, 1.0) } else { 1.0 };
+        let dry = within(fog_margin_k - self.fresh_below_fog_margin_k, self.recirculation_fog_band_k);
+        dry.min(within(self.fresh_above_co2_ppm - co2_ppm, self.recirculation_co2_band_ppm))
+    }
+
+    /// Share of the air that is blown at the windscreen [-].
+    #[must_use]
+    pub fn windscreen_share(&self, fog_margin_k: f64) -> f64 {
+        if self.windscreen_below_fog_margin_k > 0.0 {
+            (1.0 - fog_margin_k / self.windscreen_below_fog_margin_k).clamp(0.0, 1.0)
+        } else {
+            0.0
+        }
+    }
+
+    /// Whether any of this is switched on.
+    #[must_use]
+    pub fn minds_air(&self) -> bool {
+        self.recirculation_fog_band_k > 0.0
+            || self.recirculation_co2_band_ppm > 0.0
+            || self.windscreen_below_fog_margin_k > 0.0
+    }
+
+    /// Holds the recirculation of each cabin back where its air calls for that, and blows air at its windscreen.
+    #[inline]
+    pub fn mind_air(&self, roles: &Roles, state: &State, demand: &mut Demand) {
+        if !self.minds_air() {
+            return;
+        }
+        let rows = roles.recirculation_rows.iter().zip(&roles.windscreen_rows);
+        for (air, (&recirculation, &windscreen)) in state.cabin_air.iter().zip(rows) {
+            let fog_margin_k = air.fog_margin_k();
+            demand[recirculation] *= self.recirculation_share(fog_margin_k, air.co2 * 1e6);
+            demand[windscreen] = self.windscreen_share(fog_margin_k);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -81,7 +142,29 @@ mod tests {
             heating_blower_band_k: 4.0,
             cooling_blower_band_k: 2.0,
             least_blower_level: 0.3,
+            fresh_below_fog_margin_k: 1.0,
+            recirculation_fog_band_k: 4.0,
+            fresh_above_co2_ppm: 1200.0,
+            recirculation_co2_band_ppm: 400.0,
+            windscreen_below_fog_margin_k: 3.0,
         }
+    }
+
+    #[test]
+    fn air_goes_round_as_far_as_fog_and_carbon_dioxide_allow() {
+        let share = |margin_k, co2_ppm| modern().recirculation_share(margin_k, co2_ppm);
+        assert_eq!((share(20.0, 420.0), share(1.0, 420.0), share(-3.0, 420.0)), (1.0, 0.0, 0.0));
+        assert_eq!((share(3.0, 420.0), share(20.0, 1000.0), share(3.0, 1100.0)), (0.5, 0.5, 0.25));
+        assert_eq!(share(20.0, 2000.0), 0.0);
+        let none = Options::default();
+        assert_eq!((none.recirculation_share(-5.0, 9000.0), none.windscreen_share(-5.0)), (1.0, 0.0));
+        assert!(!none.minds_air() && modern().minds_air());
+    }
+
+    #[test]
+    fn air_is_blown_at_a_windscreen_that_is_about_to_fog_up() {
+        let share = |margin_k| modern().windscreen_share(margin_k);
+        assert_eq!((share(3.0), share(1.5), share(0.0), share(-2.0)), (0.0, 0.5, 1.0, 1.0));
     }
 
     #[test]

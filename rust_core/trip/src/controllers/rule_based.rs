@@ -40,8 +40,10 @@ pub struct ConstantSettings {
     pub htc_flow_kg_s: f64,
     /// Coolant flow of the chiller circuit [kg/s].
     pub chiller_flow_kg_s: f64,
-    /// Blower level [-].
+    /// Blower level while heating [-].
     pub blower_level: f64,
+    /// Blower level while cooling [-].
+    pub cooling_blower_level: f64,
     /// Recirculated share while heating [-].
     pub heating_recirculation: f64,
     /// Recirculated share while cooling [-].
@@ -58,13 +60,22 @@ impl ConstantSettings {
         }
     }
 
+    /// Blower level in a mode [-].
+    #[must_use]
+    pub fn blower_level(&self, mode: CabinMode) -> f64 {
+        match mode {
+            CabinMode::Heating => self.blower_level,
+            CabinMode::Cooling => self.cooling_blower_level,
+        }
+    }
+
     /// Rows and values of these settings in a mode.
     #[must_use]
     pub fn rows(&self, mode: CabinMode, roles: &Roles) -> Vec<(usize, f64)> {
         let all = |rows: &[usize], value: f64| rows.iter().map(|&row| (row, value)).collect::<Vec<_>>();
         [
             all(&roles.recirculation_rows, self.recirculation(mode)),
-            all(&roles.blower_rows, self.blower_level),
+            all(&roles.blower_rows, self.blower_level(mode)),
             all(&roles.hot_flow_rows, self.htc_flow_kg_s),
             all(&roles.cold_flow_rows, self.chiller_flow_kg_s),
             all(roles.set_point_row.as_slice(), self.cabin_set_point_degc.kelvin()),
@@ -90,6 +101,7 @@ macro_rules! constant_settings_of {
                     htc_flow_kg_s: parameters.htc_flow_kg_s,
                     chiller_flow_kg_s: parameters.chiller_flow_kg_s,
                     blower_level: parameters.blower_level,
+                    cooling_blower_level: parameters.cooling_blower_level,
                     heating_recirculation: parameters.heating_recirculation,
                     cooling_recirculation: parameters.cooling_recirculation,
                 }

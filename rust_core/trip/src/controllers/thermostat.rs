@@ -29,6 +29,8 @@ parameters! {
         chiller_flow_kg_s: f64 = 0.001 .. 5.0,
         /// Constant blower level [-].
         blower_level: f64 = 0.0 .. 1.0,
+        /// Blower level while cooling [-].
+        cooling_blower_level: f64 = 0.0 .. 1.0,
         /// Recirculated share while heating [-].
         heating_recirculation: f64 = 0.0 .. 0.95,
         /// Recirculated share while cooling [-].
@@ -115,8 +117,13 @@ impl RuleBased for Thermostat {
         let mode = memory.mode;
         self.presets.enter(mode, demand);
         let parameters = &self.parameters;
-        let level = parameters.options.blower_level(mode, parameters.blower_level, self.lack_k(state, mode));
+        let level = parameters.options.blower_level(
+            mode,
+            self.constant_settings().blower_level(mode),
+            self.lack_k(state, mode),
+        );
         self.roles.blow(level, demand);
+        parameters.options.mind_air(&self.roles, state, demand);
         let cabin_k = state.temperatures_k[self.roles.cabin_air.index()];
         let cold = cabin_k < self.parameters.ptc_below_degc.kelvin();
         self.roles.allow_heaters(self.strategy.ptc && mode == CabinMode::Heating && cold, demand);
@@ -173,9 +180,13 @@ mod tests {
              battery_from_supply_degc=80.0, battery_supply_band_k=5.0, heating_blower_band_k=10.0, \
              cooling_blower_band_k=5.0, least_blower_level=0.3}",
         );
-        let experiment =
-            Experiment::load("jeffs2019/case1-4", Some("thermostat"), &[change.expect("an assignment")])
-                .expect("built in");
+        let level = Override::parse("controller.blower_level=1.0").expect("an assignment");
+        let experiment = Experiment::load(
+            "jeffs2019/case1-4",
+            Some("thermostat"),
+            &[change.expect("an assignment"), level],
+        )
+        .expect("built in");
         let ranges = &experiment.plant.ranges;
         let row = |name: &str| ranges.row(name).expect("an actuator");
         for (cabin_degc, level) in [(5.0, 1.0), (17.0, 0.65), (22.0, 0.3)] {

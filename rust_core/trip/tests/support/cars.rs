@@ -48,7 +48,13 @@ pub fn vehicle(declaration: &Declaration) -> Table {
         let section = match member.kind {
             MemberKind::Battery | MemberKind::Motor | MemberKind::Transmission => continue,
             MemberKind::Store => like("thermal_battery"),
-            MemberKind::FrontEnd => like("ambient_exchanger"),
+            MemberKind::FrontEnd => {
+                let mut section = like("ambient_exchanger");
+                if declaration.air_streams.iter().any(|stream| stream.through.contains(&member.name)) {
+                    section.remove("air");
+                }
+                section
+            }
             MemberKind::Plate => Table::from_iter([("ua_w_k".to_owned(), Value::Float(600.0))]),
             MemberKind::Cabin => {
                 let mut cabin = like("cabin");
@@ -67,9 +73,8 @@ pub fn vehicle(declaration: &Declaration) -> Table {
         car.insert(heater.name.clone(), Value::Table(like("ptc")));
     }
     for stream in &declaration.air_streams {
-        let rates = [("capacity_rate_w_k", 1000.0), ("capacity_rate_per_speed_w_s_k_m", 100.0)];
-        let rates = rates.map(|(key, rate)| (key.to_owned(), Value::Float(rate)));
-        car.insert(stream.name.clone(), Value::Table(Table::from_iter(rates)));
+        let air = like("ambient_exchanger").remove("air").expect("the default has one");
+        car.insert(stream.name.clone(), air);
     }
     let mut refrigeration = Table::new();
     for exchanger in &declaration.exchangers {

@@ -8,7 +8,7 @@ use hp_plant::architecture::declaration::MemberKind;
 use hp_plant::command::Command;
 use hp_plant::config::Celsius;
 use hp_plant::config::initial::InitialParameters;
-use hp_plant::media::air;
+use hp_plant::media::{air, moist_air};
 use hp_plant::plant::{Disturbance, Plant, StepRecord};
 use hp_plant::state::State;
 use proptest::prelude::*;
@@ -33,6 +33,7 @@ pub struct RandomScenario {
     state_of_charge_pct: f64,
     solar_gain_w: f64,
     occupants: f64,
+    relative_humidity: f64,
     speeds_m_s: Vec<f64>,
     commands: Vec<Vec<f32>>,
 }
@@ -45,12 +46,17 @@ pub fn random_scenario(actuators: usize) -> impl Strategy<Value = RandomScenario
     let command = prop::collection::vec(value, actuators);
     (
         (-30.0..45.0_f64, -30.0..60.0_f64, -30.0..45.0_f64, -20.0..90.0_f64),
-        (3.0..100.0_f64, 0.0..800.0_f64, 0.0..5.0_f64),
+        (3.0..100.0_f64, 0.0..800.0_f64, 0.0..5.0_f64, 0.0..1.0_f64),
         prop::collection::vec(0.0..40.0_f64, segments + 1),
         prop::collection::vec(command, segments),
     )
         .prop_map(
-            |(temperatures, (state_of_charge_pct, solar_gain_w, occupants), speeds_m_s, commands)| {
+            |(
+                temperatures,
+                (state_of_charge_pct, solar_gain_w, occupants, relative_humidity),
+                speeds_m_s,
+                commands,
+            )| {
                 RandomScenario {
                     ambient_degc: temperatures.0,
                     soak_degc: temperatures.1,
@@ -59,6 +65,7 @@ pub fn random_scenario(actuators: usize) -> impl Strategy<Value = RandomScenario
                     state_of_charge_pct,
                     solar_gain_w,
                     occupants: occupants.floor(),
+                    relative_humidity,
                     speeds_m_s,
                     commands,
                 }
@@ -97,6 +104,10 @@ impl RandomScenario {
         initial
     }
 
+    fn ambient_humidity_ratio(&self) -> f64 {
+        moist_air::humidity_ratio(self.relative_humidity, Celsius(self.ambient_degc).kelvin())
+    }
+
     fn disturbance(&self, step: usize) -> Disturbance {
         let segment = step / HOLD_S;
         let (from, to) = (self.speeds_m_s[segment], self.speeds_m_s[segment + 1]);
@@ -105,6 +116,7 @@ impl RandomScenario {
             start_speed_m_s: at(step),
             end_speed_m_s: if (step + 1).is_multiple_of(HOLD_S) { to } else { at(step + 1) },
             air: air::at_temperature(Celsius(self.ambient_degc).kelvin()),
+            ambient_humidity_ratio: self.ambient_humidity_ratio(),
             solar_gain_w: self.solar_gain_w,
             occupants: self.occupants,
         }
@@ -119,7 +131,7 @@ impl RandomScenario {
 
     /// Drives the scenario and shows every step.
     pub fn drive(&self, plant: &Plant, mut look: impl FnMut(usize, &Step<'_>)) {
-        let mut state = plant.parked(&self.initial(plant));
+        let mut state = plant.parked_in(&self.initial(plant), self.ambient_humidity_ratio());
         for step in 0..STEPS_EACH {
             let (before, command, disturbance) = (state, self.command(step), self.disturbance(step));
             let record = plant.step(&mut state, &command, &disturbance);

@@ -5,8 +5,10 @@ use hp_plant::architecture::declaration::Level;
 use hp_plant::architecture::layout::{BranchSide, ExchangerSide};
 use hp_plant::circuits::refrigeration_cycle::RefrigerationCycle;
 use hp_plant::components::cabin::Ventilation;
+use hp_plant::components::frost::FrostEffect;
 use hp_plant::components::heat_exchanger::inlet_conductance_w_k;
 use hp_plant::components::refrigerant_exchanger::{CondenserStreams, EvaporatorStreams};
+use hp_plant::flows::Flow;
 use hp_plant::numerics::thermal_network::Node;
 
 /// Rounding of heat flows that are worked out in another order [W].
@@ -16,11 +18,34 @@ const ROUNDING_W: f64 = 1e-6;
 pub fn check(step: &Step<'_>) {
     let entry = step.record.ledger;
     assert!(entry.relative() < TOLERANCE, "at {} s: {entry:?}", step.after.time_s);
+    check_air(step);
     check_finite(step);
     check_branches(step);
     check_limits(step);
     check_exchangers(step);
     check_supply_air(step);
+}
+
+/// Water of every cabin balances, counted from states and parameters; none of it is negative.
+fn check_air(step: &Step<'_>) {
+    let entry = step.record.water_ledger;
+    assert!(entry.relative() < TOLERANCE, "at {} s: {entry:?}", step.after.time_s);
+    for (place, share) in step.plant.vehicle.cabins.iter().enumerate() {
+        let (air, water) = (&step.after.cabin_air[place], &step.record.water[place]);
+        assert!(air.humidity_ratio >= 0.0 && air.humidity_ratio < 1.0, "{air:?}");
+        assert!(air.co2 >= 419e-6 && air.co2 < 0.01, "{air:?}");
+        assert!(
+            air.film_kg >= 0.0 && water.core_kg_s >= 0.0 && water.drained_kg_s >= 0.0,
+            "{air:?} {water:?}"
+        );
+        assert!((200.0..450.0).contains(&air.windscreen_k), "{air:?}");
+        let stored_kg = |air| share.parameters.air.water_kg(air);
+        let gained_kg = stored_kg(air) - stored_kg(&step.before.cabin_air[place]);
+        let entered_kg_s = water.fresh_kg_s + water.occupants_kg_s;
+        let left_kg_s = water.exhaust_kg_s + water.core_kg_s + water.drained_kg_s;
+        let residual_kg = gained_kg - (entered_kg_s - left_kg_s);
+        assert!(residual_kg.abs() < 1e-9 * (gained_kg.abs() + entered_kg_s + left_kg_s + 1e-6), "{water:?}");
+    }
 }
 
 fn check_finite(step: &Step<'_>) {
@@ -77,27 +102,44 @@ pub fn cabin_air(step: &Step<'_>, cabin: usize, state: &hp_plant::state::State) 
     let (layout, share) = (&step.plant.vehicle.layout.cabins[cabin], &step.plant.vehicle.cabins[cabin]);
     let demand = step.plant.ranges.decode(step.command);
     let occupants = step.disturbance.occupants * share.occupant_share;
-    let (level, recirculation) = (demand[layout.blower_row], demand[layout.recirculation_row]);
+    let (mut level, recirculation) = (demand[layout.blower_row], demand[layout.recirculation_row]);
+    if step.before.short_of_power {
+        level = 0.0;
+    }
     let air = share.parameters.ventilation(level, recirculation, occupants);
     let (fresh, recirculated) = (1.0 - air.recirculation, air.recirculation);
     let cabin_k = state.temperatures_k[layout.air.index()];
     (air, fresh * step.disturbance.air.temperature_k + recirculated * cabin_k)
 }
 
-/// Air at a front-end exchanger: ambient, and what the exchangers before it gave off in the second before [K].
+/// Air at a front-end exchanger: ambient, warmed in the second before by the exchangers before it and by frost that grows [K].
 pub fn front_end_air_k(step: &Step<'_>, front_end: usize) -> f64 {
     let vehicle = &step.plant.vehicle;
-    let mut air_k = step.disturbance.air.temperature_k;
-    if let Some(stream) = &vehicle.air_streams[front_end] {
-        let speed_m_s = step.disturbance.mean_speed_m_s();
-        let rate_w_k = stream.capacity_rate_w_k + stream.capacity_rate_per_speed_w_s_k_m * speed_m_s;
-        let mut before = vehicle.layout.front_ends[front_end].behind;
-        while let Some(other) = before {
-            air_k += step.before.front_end_w[other] / rate_w_k;
-            before = vehicle.layout.front_ends[other].behind;
-        }
+    let mut air_k = step.disturbance.air.temperature_k + step.before.frosts[front_end].rise_k;
+    let mut before = vehicle.layout.front_ends[front_end].behind;
+    while let Some(other) = before {
+        air_k += step.before.front_end_rise_k[other];
+        before = vehicle.layout.front_ends[other].behind;
     }
     air_k
+}
+
+/// Air flow of a front-end exchanger [kg/s], by the power of the fan; none where several fans are at work.
+pub fn front_end_flow_kg_s(step: &Step<'_>, front_end: usize) -> Option<f64> {
+    let vehicle = &step.plant.vehicle;
+    let stream = &vehicle.air_streams[front_end];
+    let face_m_s = stream.ram_air_share * step.disturbance.mean_speed_m_s();
+    let ram_m3_s = stream.core_area_m2 * face_m_s.hypot(0.1);
+    let fan_w = step.record.flows[Flow::FAN];
+    let fans = vehicle.layout.front_ends.iter().filter(|end| end.behind.is_none()).count();
+    let level = if fan_w > 0.0 { (fan_w / stream.fan_power_w).cbrt() } else { 0.0 };
+    let flow_m3_s = ram_m3_s.hypot(level * stream.fan_air_flow_m3_s);
+    let frosted = frost_effect(step, front_end).flow_share;
+    (fans == 1 || fan_w == 0.0).then_some(flow_m3_s * frosted * step.disturbance.air.density_kg_m3)
+}
+
+fn frost_effect(step: &Step<'_>, front_end: usize) -> FrostEffect {
+    step.plant.vehicle.front_ends[front_end].frost.effect(step.before.frosts[front_end].mass_kg)
 }
 
 /// No branch carries heat from cold to hot, by the temperatures at the end of the step.
@@ -178,12 +220,12 @@ fn check_supply_air(step: &Step<'_>) {
     }
 }
 
-/// Coolant or air at an exchanger of the refrigerant loop: inlet [K], capacity rate and conductance [W/K].
-pub fn stream(step: &Step<'_>, place: usize) -> (f64, f64, f64) {
+/// Coolant or air at an exchanger of the refrigerant loop: inlet [K], capacity rate and conductance [W/K], where they are known.
+pub fn stream(step: &Step<'_>, place: usize) -> Option<(f64, f64, f64)> {
     let vehicle = &step.plant.vehicle;
     let exchanger = &vehicle.layout.exchangers[place];
     let ua_w_k = vehicle.exchanger_ua_w_k[place];
-    match exchanger.side {
+    Some(match exchanger.side {
         ExchangerSide::Loop(circuit) => {
             let flow_kg_s = step.after.pumps[circuit].flow_kg_s;
             let rate_w_k = flow_kg_s * vehicle.loops[circuit].circuit.coolant_specific_heat_j_kg_k;
@@ -196,15 +238,21 @@ pub fn stream(step: &Step<'_>, place: usize) -> (f64, f64, f64) {
             (inlet_k, air.supply_rate_w_k, inlet_conductance_w_k(air.supply_rate_w_k, ua_w_k))
         }
         ExchangerSide::FrontEnd(front_end) => {
-            let own = &vehicle.front_ends[front_end];
-            let speed_m_s = step.disturbance.mean_speed_m_s();
-            let ua_w_k = match exchanger.level {
-                Level::Condensing => own.radiator_ua_w_k + own.radiator_ua_per_speed_w_s_k_m * speed_m_s,
-                Level::Evaporating => own.source_ua_w_k + own.source_ua_per_speed_w_s_k_m * speed_m_s,
+            let flow_kg_s = front_end_flow_kg_s(step, front_end)?;
+            let (own, frost) = (&vehicle.front_ends[front_end], frost_effect(step, front_end));
+            let clean_w_k = own.ua_w_k * flow_kg_s.powf(0.6) * frost.air_share;
+            let (rate_w_k, ua_w_k) = (1006.0 * flow_kg_s, 1.0 / (1.0 / clean_w_k + frost.layer_k_w));
+            let disturbance = step.disturbance;
+            let share = match exchanger.level {
+                Level::Condensing => 1.0,
+                Level::Evaporating => own
+                    .frost
+                    .capacity_share(disturbance.air.temperature_k, disturbance.ambient_humidity_ratio),
             };
-            (front_end_air_k(step, front_end), f64::INFINITY, ua_w_k)
+            let conductance_w_k = share * inlet_conductance_w_k(rate_w_k, ua_w_k);
+            (front_end_air_k(step, front_end), rate_w_k, conductance_w_k)
         }
-    }
+    })
 }
 
 /// Each exchanger carries `G |T - inlet|` or nothing, never backwards, and no stream crosses in any of them.
@@ -222,7 +270,7 @@ fn check_exchangers(step: &Step<'_>) {
         if heat_w == 0.0 {
             continue;
         }
-        let (inlet_k, rate_w_k, conductance_w_k) = stream(step, place);
+        let Some((inlet_k, rate_w_k, conductance_w_k)) = stream(step, place) else { continue };
         let room_k = if hot {
             result.condensing_temperature_k - inlet_k
         } else {

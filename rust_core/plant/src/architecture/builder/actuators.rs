@@ -79,5 +79,12 @@ impl Builder<'_> {
             let row = self.row(ActuatorRow::level("cabin_set_point", "K", Purpose::CabinSetPoint, text));
             self.layout.set_point_row = Some(row);
         }
+        for place in 0..self.layout.cabins.len() {
+            let name = format!("{}windscreen_share", self.prefix(self.layout.cabins[place].member));
+            let text =
+                "share of the supply air that is blown at the windscreen, the rest at the feet".to_owned();
+            self.layout.cabins[place].windscreen_row =
+                self.row(ActuatorRow::level(name, "-", Purpose::Windscreen(place), text));
+        }
     }
 }

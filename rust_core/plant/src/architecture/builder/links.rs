@@ -136,13 +136,8 @@ impl Builder<'_> {
                 (Law::CoolingCore(place, cabin as u8), Some(self.layout.cabins[cabin].air))
             }
             (BranchSide::Ambient(end), out_of_loop) => {
-                let law = match (self.layout.front_ends[end].behind, out_of_loop) {
-                    (None, true) => Law::BranchToAmbient(place),
-                    (None, false) => Law::BranchFromAmbient(place),
-                    (Some(_), true) => Law::BranchToStream(place, end as u8),
-                    (Some(_), false) => Law::BranchFromStream(place, end as u8),
-                };
-                (law, None)
+                let law = if out_of_loop { Law::BranchToAir } else { Law::BranchFromAir };
+                (law(place, end as u8), None)
             }
         }
     }

@@ -1,0 +1,55 @@
+"""The unit that a name ends with: of configuration keys, totals and signals."""
+
+from typing import Final
+
+_UNITS: Final = {
+    "kwh_per_100_km": "kWh/100 km",
+    "w_m2_k": "W/(m2 K)",
+    "w_m_k": "W/(m K)",
+    "j_kg_k": "J/(kg K)",
+    "kg_m3": "kg/m3",
+    "m2_k_w": "m2 K/W",
+    "k_h": "K h",
+    "j_k": "J/K",
+    "w_k": "W/K",
+    "w_m2": "W/m2",
+    "kg_s": "kg/s",
+    "kg_m2": "kg m2",
+    "m_s2": "m/s2",
+    "m_s": "m/s",
+    "m3_s": "m3/s",
+    "rev_s": "1/s",
+    "km_h": "km/h",
+    "kwh": "kWh",
+    "wh": "Wh",
+    "ah": "Ah",
+    "pct": "%",
+    "degc": "degC",
+    "bar": "bar",
+    "ohm": "ohm",
+    "deg": "deg",
+    "km": "km",
+    "kg": "kg",
+    "kw": "kW",
+    "nm": "N m",
+    "pa": "Pa",
+    "hz": "Hz",
+    "m2": "m2",
+    "m3": "m3",
+    "mm": "mm",
+    "k": "K",
+    "s": "s",
+    "v": "V",
+    "w": "W",
+    "a": "A",
+    "m": "m",
+    "n": "N",
+    "j": "J",
+}
+"""Unit by ending, longer endings before those that they end with."""
+
+
+def unit_of(name: str) -> str:
+    """Returns the unit that the last part of a dotted name ends with; `-` where it has none."""
+    last = name.rpartition(".")[2].partition("[")[0]
+    return next((unit for ending, unit in _UNITS.items() if last.endswith(f"_{ending}")), "-")
