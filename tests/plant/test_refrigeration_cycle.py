@@ -21,17 +21,18 @@ pytestmark = [
 ]
 
 
-@pytest.fixture(scope="module", params=check.REFRIGERANTS)
+CASES = [(fluid, share) for fluid in check.REFRIGERANTS for share in check.LOSS_TO_GAS_SHARES]
+
+
+@pytest.fixture(scope="module", params=CASES, ids=str)
 def rust(request: pytest.FixtureRequest) -> Rust:
-    return check.rust_points(request.param)
-
-
-def test_twenty_points_take_the_power_that_is_asked_for(
-    rust: Rust,
-) -> None:
-    _, points = rust
+    """Parameters and the points that take the power asked for; with the loss in the gas some meet a limit."""
+    fluid, share = request.param
+    parameters, points = check.rust_points(fluid, share)
     assert len(points) == 20
-    assert {point["status"] for point in points} == {"Converged"}
+    converged = [point for point in points if point["status"] == "Converged"]
+    assert len(converged) == 20 if share == 0.0 else len(converged) >= 15
+    return parameters, converged
 
 
 def test_cycle_agrees_with_coolprop(rust: Rust) -> None:
