@@ -61,7 +61,7 @@ fn cabin_degc(experiment: &Experiment, state: &State) -> f64 {
     state.temperatures_k[experiment.plant.layout().cabins[0].air.index()] - 273.15
 }
 
-/// The last 10 minutes of two hours at 60 km/h.
+/// The last 10 minutes of a drive.
 #[derive(Debug)]
 struct Steady {
     power_w: f64,
@@ -70,7 +70,18 @@ struct Steady {
 }
 
 fn steady(rules: &str, ambient_degc: f64, cabin_start_degc: f64, more: &[&str]) -> Steady {
-    let cycle = constant_speed(60.0, 7200);
+    steady_after(2, rules, ambient_degc, cabin_start_degc, more)
+}
+
+/// The last 10 minutes of some hours at 60 km/h.
+fn steady_after(
+    hours: usize,
+    rules: &str,
+    ambient_degc: f64,
+    cabin_start_degc: f64,
+    more: &[&str],
+) -> Steady {
+    let cycle = constant_speed(60.0, hours as u32 * 3600);
     let mut changes = vec![
         format!("scenario.cycle=\"{}\"", cycle.path().display()),
         format!("scenario.climate.ambient_temperature_degc={ambient_degc}"),
@@ -86,7 +97,7 @@ fn steady(rules: &str, ambient_degc: f64, cabin_start_degc: f64, more: &[&str]) 
     let experiment = load(rules, &changes);
     let mut mean = Steady { power_w: 0.0, ptc_w: 0.0, cabin_degc: 0.0 };
     let _ = drive(&experiment, |step, second| {
-        if step > 6600 {
+        if step > hours * 3600 - 600 {
             mean.power_w += second.power_w / 600.0;
             mean.ptc_w += second.ptc_w / 600.0;
             mean.cabin_degc += cabin_degc(&experiment, second.before) / 600.0;
@@ -96,9 +107,11 @@ fn steady(rules: &str, ambient_degc: f64, cabin_start_degc: f64, more: &[&str]) 
 }
 
 /// Largest over smallest power, less 1, for cabins that began at 0..22 degC, and what each came to.
-fn spread(rules: &str, ambient_degc: f64) -> (f64, Vec<Steady>) {
-    let all: Vec<Steady> =
-        [0.0, 7.0, 15.0, 22.0].par_iter().map(|&start| steady(rules, ambient_degc, start, &[])).collect();
+fn spread(hours: usize, rules: &str, ambient_degc: f64) -> (f64, Vec<Steady>) {
+    let all: Vec<Steady> = [0.0, 7.0, 15.0, 22.0]
+        .par_iter()
+        .map(|&start| steady_after(hours, rules, ambient_degc, start, &[]))
+        .collect();
     let powers = || all.iter().map(|steady| steady.power_w);
     let spread = powers().fold(0.0, f64::max) / powers().fold(f64::INFINITY, f64::min) - 1.0;
     (spread, all)
@@ -107,7 +120,9 @@ fn spread(rules: &str, ambient_degc: f64) -> (f64, Vec<Steady>) {
 #[test]
 fn steady_power_does_not_depend_on_how_warm_the_cabin_was() {
     for ambient_degc in [-7.0, 0.0, 5.0] {
-        let (apart, all) = spread("hpcu-modern", ambient_degc);
+        // At 5 degC 240 W hold the cabin; motor and furnishings that were warmed less take 7 W more after two hours (2.5 %).
+        let hours = if ambient_degc < 5.0 { 2 } else { 4 };
+        let (apart, all) = spread(hours, "hpcu-modern", ambient_degc);
         assert!(apart < 0.02, "{ambient_degc} degC: {apart}, {all:?}");
         // The heat pump alone holds the cabin there, so that there is nothing left for the PTC.
         for steady in all {
@@ -115,7 +130,7 @@ fn steady_power_does_not_depend_on_how_warm_the_cabin_was() {
             assert_eq!(steady.ptc_w, 0.0, "{ambient_degc} degC: {steady:?}");
         }
         // The rules of the paper leave it to chance.
-        let (paper, all) = spread("hpcu", ambient_degc);
+        let (paper, all) = spread(2, "hpcu", ambient_degc);
         assert!(paper > 0.1, "{ambient_degc} degC: {paper}, {all:?}");
     }
 }
