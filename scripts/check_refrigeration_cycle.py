@@ -6,63 +6,31 @@ TESPy: a component network at the saturation temperatures and evaporator duty of
     python scripts/check_refrigeration_cycle.py
 """
 
-import csv
 import math
-import subprocess
 import sys
-import tomllib
-from pathlib import Path
 from typing import Any
 
 import CoolProp
 import numpy as np
+import rust_refrigeration
 from CoolProp.CoolProp import AbstractState
 from numpy.typing import NDArray
+from rust_refrigeration import Point, efficiencies
 from scipy.optimize import root
 from tespy.components import Compressor, CycleCloser, SimpleHeatExchanger, Valve
 from tespy.connections import Connection
 from tespy.networks import Network
 
-ROOT = Path(__file__).parents[1]
 REFRIGERANTS = ("R134a", "R1234yf", "R290", "R152A")
 """Built-in refrigerants by CoolProp's names."""
 TOLERANCE = 1e-3
 LOSS_TO_GAS_SHARES = (0.0, 0.8)
 
-Point = dict[str, Any]
-
 
 def rust_points(refrigerant: str, loss_to_gas_share: float) -> tuple[dict[str, Any], list[Point]]:
-    """Parameters and operating points as the Rust example prints them."""
-    command = ["cargo", "run", "--quiet", "--release", "--example", "refrigeration_points"]
-    command += ["--", refrigerant, "-", str(loss_to_gas_share)]
-    text = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
-    lines = text.splitlines()
-    parameters = tomllib.loads("\n".join(line[2:] for line in lines if line.startswith("# ")))
-    parameters["refrigerant"] = refrigerant
-    rows = csv.DictReader(line for line in lines if not line.startswith("#"))
-    points = [{key: value if key == "status" else float(value) for key, value in row.items()} for row in rows]
-    return parameters, points
-
-
-def efficiencies(compressor: dict[str, float], ratio: float, speed: float) -> tuple[float, float]:
-    """Volumetric and isentropic efficiency."""
-    leakage = (
-        compressor["leakage_share"]
-        * (compressor["minimum_speed_rev_s"] / speed)
-        * (ratio - 1.0)
-        / math.sqrt(ratio / 2.0)
-    )
-    filling = compressor["volumetric_efficiency_at_unity"] * math.exp(
-        -compressor["volumetric_efficiency_slope"] * (ratio - 1.0)
-    )
-    extra_work = (
-        compressor["isentropic_pressure_ratio_loss"]
-        * math.log(ratio / compressor["isentropic_peak_pressure_ratio"]) ** 2
-        + compressor["isentropic_speed_loss"] * (speed / compressor["maximum_speed_rev_s"] - 0.5) ** 2
-    )
-    isentropic = compressor["isentropic_efficiency_peak"] / (1.0 + extra_work) / (1.0 + leakage)
-    return filling / (1.0 + leakage), isentropic
+    """Parameters and operating points of a refrigerant without injection."""
+    parameters, points = rust_refrigeration.rust_points(refrigerant, "-", str(loss_to_gas_share))
+    return {**parameters, "refrigerant": refrigerant}, points
 
 
 def gas_heat_per_work(compressor: dict[str, float]) -> float:

@@ -11,14 +11,11 @@ class is derived with the balance and the effectiveness of ours; everything else
     uv run scripts/check_vapour_injection.py
 """
 
-import csv
 import math
-import subprocess
 import sys
-import tomllib
-from pathlib import Path
 from typing import Any
 
+from rust_refrigeration import Point, efficiencies, rust_points
 from scipy.optimize import brentq
 from vclibpy import FlowsheetState, Inputs
 from vclibpy.components.compressors import Compressor
@@ -28,45 +25,15 @@ from vclibpy.flowsheets import VaporInjectionPhaseSeparator
 from vclibpy.flowsheets.vapor_injection import BaseVaporInjection
 from vclibpy.media import CoolProp as Media
 
-ROOT = Path(__file__).parents[1]
 FLUIDS = ("R134a", "R1234yf", "R290", "R152A")
 KINDS = ("economiser", "flash-tank")
 TOLERANCE = 5e-3
 
-Point = dict[str, Any]
 
-
-def rust_points(fluid: str, kind: str) -> tuple[dict[str, Any], list[Point]]:
-    """Parameters and operating points as the Rust example prints them."""
-    command = ["cargo", "run", "--quiet", "--release", "--example", "refrigeration_points", fluid, kind]
-    text = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
-    lines = text.splitlines()
-    parameters = tomllib.loads("\n".join(line[2:] for line in lines if line.startswith("# ")))
-    rows = csv.DictReader(line for line in lines if not line.startswith("#"))
-    points: list[Point] = [
-        {key: value if key == "status" else float(value) for key, value in row.items()} for row in rows
-    ]
+def running_points(fluid: str, kind: str) -> tuple[dict[str, Any], list[Point]]:
+    """Parameters and those operating points at which the machine runs."""
+    parameters, points = rust_points(fluid, kind)
     return parameters, [point for point in points if point["mass_flow_kg_s"] > 0.0]
-
-
-def efficiencies(compressor: dict[str, float], ratio: float, speed: float) -> tuple[float, float]:
-    """Volumetric and isentropic efficiency of the whole machine."""
-    leakage = (
-        compressor["leakage_share"]
-        * (compressor["minimum_speed_rev_s"] / speed)
-        * (ratio - 1.0)
-        / math.sqrt(ratio / 2.0)
-    )
-    filling = compressor["volumetric_efficiency_at_unity"] * math.exp(
-        -compressor["volumetric_efficiency_slope"] * (ratio - 1.0)
-    )
-    extra_work = (
-        compressor["isentropic_pressure_ratio_loss"]
-        * math.log(ratio / compressor["isentropic_peak_pressure_ratio"]) ** 2
-        + compressor["isentropic_speed_loss"] * (speed / compressor["maximum_speed_rev_s"] - 0.5) ** 2
-    )
-    isentropic = compressor["isentropic_efficiency_peak"] / (1.0 + extra_work) / (1.0 + leakage)
-    return filling / (1.0 + leakage), isentropic
 
 
 class GivenCompressor(Compressor):  # type: ignore[misc]  # vclibpy has no types
@@ -206,7 +173,7 @@ def main() -> int:
     worst = 0.0
     for fluid in FLUIDS:
         for kind in KINDS:
-            parameters, points = rust_points(fluid, kind)
+            parameters, points = running_points(fluid, kind)
             largest: dict[str, float] = {}
             for point in points:
                 expected = vclibpy_cycle(fluid, kind, parameters, point)

@@ -18,6 +18,7 @@ pub mod reward;
 pub mod rows;
 pub mod scenario_sampler;
 pub mod setup;
+mod side_by_side;
 pub mod snapshot;
 pub mod summaries;
 pub mod threads;

@@ -1,17 +1,12 @@
-//! Totals of many different runs, side by side, on threads that live as long as the call: a fork has none to wait for.
+//! Totals of many different runs, side by side.
 
 use crate::guard::caught;
+use crate::side_by_side::side_by_side;
 use hp_plant::config::library::Override;
 use hp_plant::error::PlantResult;
 use hp_trip::experiment::Experiment;
 use hp_trip::run::EndReason;
-use rayon::ThreadPoolBuilder;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::Duration;
-
-/// So often the caller is asked whether to go on.
-const BETWEEN_CHECKS: Duration = Duration::from_millis(50);
 
 /// A run that is yet to be loaded.
 #[derive(Debug, Clone)]
@@ -50,54 +45,15 @@ impl PlannedRun {
 pub fn summaries<E>(
     runs: &[PlannedRun],
     threads: usize,
-    mut go_on: impl FnMut() -> Result<(), E>,
+    go_on: impl FnMut() -> Result<(), E>,
 ) -> Result<Vec<PlantResult<Summarised>>, E> {
-    let over = AtomicBool::new(false);
-    let drive = |run: &PlannedRun| caught(|| run.drive(&over)).transpose();
-    let mut all: Vec<Option<PlantResult<Summarised>>> = Vec::new();
-    all.resize_with(runs.len(), || None);
-    let Ok(pool) = ThreadPoolBuilder::new().num_threads(threads.max(1)).build() else {
-        // No thread is to be had: the calling one does the work.
-        for (place, run) in runs.iter().enumerate() {
-            go_on()?;
-            all[place] = drive(run);
-        }
-        return Ok(all.into_iter().flatten().collect());
-    };
-    pool.in_place_scope(|scope| {
-        let (sender, receiver) = channel();
-        for (place, run) in runs.iter().enumerate() {
-            let sender = sender.clone();
-            let (over, drive) = (&over, &drive);
-            scope.spawn(move |_| {
-                if !over.load(Ordering::Relaxed)
-                    && let Some(driven) = drive(run)
-                {
-                    // Nobody listens where the work was given up.
-                    drop(sender.send((place, driven)));
-                }
-            });
-        }
-        drop(sender);
-        loop {
-            match receiver.recv_timeout(BETWEEN_CHECKS) {
-                Ok((place, driven)) => all[place] = Some(driven),
-                Err(RecvTimeoutError::Disconnected) => return Ok(()),
-                Err(RecvTimeoutError::Timeout) => {}
-            }
-            if let Err(error) = go_on() {
-                over.store(true, Ordering::Relaxed);
-                return Err(error);
-            }
-        }
-    })?;
-    Ok(all.into_iter().flatten().collect())
+    side_by_side(runs, threads.max(1), |run, over| caught(|| run.drive(over)).transpose(), go_on)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Instant;
+    use std::time::{Duration, Instant};
 
     fn planned(scenario: &str, ambient_degc: f64) -> PlannedRun {
         let change = format!("scenario.climate.ambient_temperature_degc={ambient_degc}");
