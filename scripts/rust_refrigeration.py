@@ -1,4 +1,4 @@
-"""The Rust plant's refrigeration loop at 20 points and its compressor's efficiencies, for what checks them."""
+"""The plant's refrigeration loop at 20 points and its compressor's efficiencies, for what checks them."""
 
 import csv
 import math
