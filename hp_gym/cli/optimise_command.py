@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
+from hp_gym.cli import many_runs
 from hp_gym.cli.output import console, fail, print_json
 
 if TYPE_CHECKING:
@@ -37,19 +38,15 @@ def optimise(
         list[str] | None,
         typer.Option("--constraint", metavar="KPI<=VALUE", help="Limit of a total, or KPI>=VALUE."),
     ] = None,
-    controller: Annotated[str | None, typer.Option(help="Name or path of a controller.")] = None,
-    vehicle: Annotated[str | None, typer.Option(help="Name or path of a vehicle.")] = None,
-    changes: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a value in all runs.")
-    ] = None,
-    overrides: Annotated[
-        Path | None, typer.Option(help="A .toml file of changes for all runs, as `calibrate` writes.")
-    ] = None,
+    controller: many_runs.Controller = None,
+    vehicle: many_runs.Vehicle = None,
+    changes: many_runs.Changes = None,
+    overrides: many_runs.Overrides = None,
     trials: Annotated[int, typer.Option(min=1, help="Trials, those in the folder included.")] = 300,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the search.")] = 0,
     out: Annotated[Path, typer.Option(help="Folder for the trials.")] = Path("out/optimise"),
     plot: Annotated[Path | None, typer.Option(help="Draw the trials to this .png, .svg or .pdf.")] = None,
-    threads: Annotated[int | None, typer.Option(min=1, help="Native threads; one a processor.")] = None,
+    threads: many_runs.Threads = None,
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
     """Searches values for one goal or the front of several; may run in several processes at once."""

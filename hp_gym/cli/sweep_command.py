@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hp_gym.cli import many_runs
 from hp_gym.cli.output import console, fail, print_json
 
 if TYPE_CHECKING:
@@ -27,14 +28,10 @@ def sweep(
             "scenario, cycle; KEY+KEY share the value. May be repeated.",
         ),
     ],
-    controller: Annotated[str | None, typer.Option(help="Name or path of a controller.")] = None,
-    vehicle: Annotated[str | None, typer.Option(help="Name or path of a vehicle.")] = None,
-    changes: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a value in all runs.")
-    ] = None,
-    overrides: Annotated[
-        Path | None, typer.Option(help="A .toml file of changes for all runs, as `calibrate` writes.")
-    ] = None,
+    controller: many_runs.Controller = None,
+    vehicle: many_runs.Vehicle = None,
+    changes: many_runs.Changes = None,
+    overrides: many_runs.Overrides = None,
     sample: Annotated[
         str | None, typer.Option(help="latin-hypercube, sobol or saltelli; all combinations by default.")
     ] = None,
@@ -51,7 +48,7 @@ def sweep(
         bool, typer.Option("--sensitivities", help="Show how much each axis of a sample matters.")
     ] = False,
     on: Annotated[str, typer.Option(help="Where to drive: threads, or ray (a cluster).")] = "threads",
-    threads: Annotated[int | None, typer.Option(min=1, help="Native threads; one a processor.")] = None,
+    threads: many_runs.Threads = None,
     chunk: Annotated[int, typer.Option(min=1, help="Runs that are driven and written at a time.")] = 500,
     keep_refused: Annotated[
         bool, typer.Option("--keep-refused", help="Note runs that the plant refuses, and go on.")
