@@ -388,7 +388,7 @@ impl RefrigerantTable {
     }
 
     /// Vapour that leaves the evaporator.
-    #[inline]
+    #[inline(always)]
     pub fn suction_state<T: Real>(&self, evaporating_k: T, superheat_k: T) -> SuctionState<T> {
         let c = self.table.evaluate::<T, 0, EVAPORATING_COLUMNS>(evaporating_k);
         SuctionState {
@@ -400,7 +400,7 @@ impl RefrigerantTable {
     }
 
     /// The isobar of a condensing temperature.
-    #[inline]
+    #[inline(always)]
     pub fn condensing_isobar<T: Real>(&self, condensing_k: T) -> CondensingIsobar<T> {
         let c = self.table.evaluate::<T, PRESSURE, CONDENSING_COLUMNS>(condensing_k);
         // Held at the ends like everything else, so that duties stay bounded for a solver that strays.
