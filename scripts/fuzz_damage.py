@@ -115,7 +115,7 @@ class States:
     """A single and a vector environment, in the middle of a trip."""
 
     def __init__(self) -> None:
-        self.env = EVHeatPumpEnv(distribution="train-v1")
+        self.env = EVHeatPumpEnv(distribution="train-v2")
         self.envs = EVHeatPumpVectorEnv(ENVIRONMENTS, threads=1)
         self.env.reset(seed=1)
         self.envs.reset(seed=1)

@@ -205,7 +205,7 @@ def readers(checkpoint_bytes: bytes) -> list[Reader]:
         ("toml", built_in("vehicle", "jeffs2019"), read_vehicle),
         ("toml", built_in("architecture", "three-loops"), read_architecture),
         ("toml", built_in("controller", "hpcu"), read_controller),
-        ("toml", built_in("distribution of episodes", "train-v1"), read_episodes),
+        ("toml", built_in("distribution of episodes", "train-v2"), read_episodes),
         ("toml", built_in("reward", "balanced"), read_reward),
         ("csv", built_in("drive cycle", "nedc"), read_cycle),
         ("csv", b"time_s,speed_km_h\n0,0\n10,36.5\n20,20\n30,0\n", read_cycle),

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 import hp_gym
 from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
 
-DISTRIBUTIONS: Final = ("train-v1", "test-v0")
+DISTRIBUTIONS: Final = ("train-v2", "test-v1")
 
 Actions = Iterator[NDArray[np.int64]]
 

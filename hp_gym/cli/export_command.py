@@ -75,7 +75,7 @@ def export(
 def _one_or_more(names: list[str] | None) -> str | list[str]:
     if not names:
         return "default"
-    return names[0] if len(names) == 1 and names[0] in {"default", "hpcu", "all"} else names
+    return names[0] if len(names) == 1 and names[0] in {"default", "heat", "hpcu", "all"} else names
 
 
 def _load(

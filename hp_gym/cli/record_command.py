@@ -26,7 +26,7 @@ def record(
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder of data sets (MINARI_DATASETS_PATH).")] = Path("out/data"),
     episodes: Annotated[int, typer.Option(min=1, help="Number of trips.")] = 100,
-    distribution: Annotated[str, typer.Option(help="Where trips are drawn from: name or path.")] = "train-v1",
+    distribution: Annotated[str, typer.Option(help="Where trips are drawn from: name or path.")] = "train-v2",
     seed: Annotated[int, typer.Option(min=0, help="Trip k is that of reset(seed=SEED + k).")] = 0,
     seeds: Annotated[
         str | None, typer.Option(help="Training seeds of ppo, for example 0,2; all by default, in turn.")

@@ -25,8 +25,9 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
 
     An electric vehicle after Jeffs et al. 2019 drives a cycle second by second. A refrigerant loop moves heat
     between two coolant loops, the chiller (cold) and the high temperature circuit (HTC, hot). The agent
-    decides which components are connected to which loop, how hard the compressor works and whether the PTC
-    heater may help. It is paid for a comfortable cabin and for little energy.
+    decides which components are connected to which loop, how hard the compressor works, whether the PTC
+    heater may help, and how much air of which kind the cabin gets. It is paid for a comfortable cabin without
+    fog and stale air, and for little energy.
 
     The plant protects itself whatever the agent asks: a connection is only granted while there is a
     temperature difference in the right direction, and pressure, coolant temperatures, compressor envelope,
@@ -35,7 +36,7 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
 
     ## Action Space
 
-    `MultiDiscrete([3 2 2 3 3 3 2 11])`:
+    `MultiDiscrete([3 2 2 3 3 3 2 11 11 11 11])`:
 
     | Num | Action           | Options                         |
     |-----|------------------|---------------------------------|
@@ -47,20 +48,24 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     | 5   | cabin            | isolated, htc, chiller          |
     | 6   | ptc              | off, allowed                    |
     | 7   | compressor_power | off, 10 levels                  |
+    | 8   | recirculation    | 11 levels                       |
+    | 9   | blower_level     | 11 levels                       |
+    | 10  | windscreen_share | 11 levels                       |
 
-    The levels of the compressor run evenly in the logarithm from its lowest to its full power. An action is
-    held for `control_interval_s`, 1 s by default; the reference policies decide every 10 s. Other ids have
+    The levels of the compressor run evenly in the logarithm from its lowest to its full power, those of the
+    air evenly from none to all: share of recirculated air, blower, share blown at the windscreen. An action
+    is held for `control_interval_s`, 1 s by default; the reference policies decide every 10 s. Other ids have
     other spaces for the same plant:
 
     - `EVHeatPumpContinuous-v0`: a `Box` in [-1, 1] with the same rows. Options are equal parts of the range,
       the compressor is off below -0.9; values beyond are held at its ends.
     - `EVHeatPumpFlat-v0`: `Discrete`, one choice among modes (`hp_gym.envs.modes.MODES`, or `modes=`).
     - `EVHeatPumpMO-v0`: as the default, its reward a vector.
-    - `EVHeatPump/train-v1`, `EVHeatPump/test-v0`, ...: as the default, on the trips of one distribution.
+    - `EVHeatPump/train-v2`, `EVHeatPump/test-v1`, ...: as the default, on the trips of one distribution.
 
-    Other rows of the actuator table (`hp_gym.command.ACTUATORS`: shares of recirculated air, blower, coolant
-    flows, requested heat flows, valves, set point of the PTC) can be added by name; as levels they have 11. A
-    row that the agent does not control does what scenario and rule-based controller give it.
+    Other rows of the actuator table (`hp_gym.command.ACTUATORS`: coolant flows, requested heat flows, valves,
+    set point of the PTC) can be added by name; as levels they have 11. A row that the agent does not control
+    does what scenario and rule-based controller give it; `actions="heat"` leaves them the air.
 
     `action_masks()` marks the options that the plant would grant in the coming second, flat, as MaskablePPO
     of sb3-contrib expects.
@@ -76,64 +81,71 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     | 2   | traction_power_w                | W    | -200000 | 200000 |
     | 3   | ambient_temperature_degc        | degC | -40     | 50     |
     | 4   | cabin_temperature_degc          | degC | -40     | 80     |
-    | 5   | battery_temperature_degc        | degC | -40     | 60     |
-    | 6   | motor_temperature_degc          | degC | -40     | 120    |
-    | 7   | transmission_temperature_degc   | degC | -40     | 120    |
-    | 8   | thermal_battery_temperature_degc | degC | -40    | 100    |
-    | 9   | htc_supply_temperature_degc     | degC | -40     | 100    |
-    | 10  | htc_return_temperature_degc     | degC | -40     | 100    |
-    | 11  | chiller_supply_temperature_degc | degC | -40     | 60     |
-    | 12  | chiller_return_temperature_degc | degC | -40     | 60     |
-    | 13  | htc_flow_kg_s                   | kg/s | 0       | 0.5    |
-    | 14  | chiller_flow_kg_s               | kg/s | 0       | 0.5    |
-    | 15  | condensing_pressure_bar         | bar  | 0       | 32     |
-    | 16  | evaporating_pressure_bar        | bar  | 0       | 16     |
-    | 17  | discharge_temperature_degc      | degC | -40     | 160    |
-    | 18  | compressor_speed_rev_s          | rev/s | 0      | 150    |
-    | 19  | soc                             | -    | 0       | 1      |
-    | 20  | battery_charge_limit_w          | W    | 0       | 150000 |
-    | 21  | battery_discharge_limit_w       | W    | 0       | 250000 |
-    | 22  | battery_power_w                 | W    | -200000 | 200000 |
-    | 23  | compressor_power_w              | W    | 0       | 8000   |
-    | 24  | ptc_power_w                     | W    | 0       | 8000   |
-    | 25  | auxiliary_power_w               | W    | 0       | 2000   |
-    | 26  | condenser_heat_flow_w           | W    | 0       | 20000  |
-    | 27  | evaporator_heat_flow_w          | W    | 0       | 20000  |
-    | 28  | cabin_htc_heat_flow_w           | W    | -10000  | 10000  |
-    | 29  | cabin_chiller_heat_flow_w       | W    | -10000  | 10000  |
-    | 30  | battery_htc_heat_flow_w         | W    | -10000  | 10000  |
-    | 31  | battery_chiller_heat_flow_w     | W    | -10000  | 10000  |
-    | 32  | ambient_htc_heat_flow_w         | W    | -30000  | 30000  |
-    | 33  | ambient_chiller_heat_flow_w     | W    | -30000  | 30000  |
-    | 34  | motor_chiller_heat_flow_w       | W    | -10000  | 10000  |
-    | 35  | transmission_chiller_heat_flow_w | W   | -10000  | 10000  |
-    | 36  | solar_gain_w                    | W    | 0       | 1500   |
-    | 37  | occupants                       | -    | 0       | 5      |
-    | 38  | cabin_on_htc                    | -    | 0       | 1      |
-    | 39  | battery_on_htc                  | -    | 0       | 1      |
-    | 40  | ambient_on_htc                  | -    | 0       | 1      |
-    | 41  | motor_on_chiller                | -    | 0       | 1      |
-    | 42  | transmission_on_chiller         | -    | 0       | 1      |
-    | 43  | battery_on_chiller              | -    | 0       | 1      |
-    | 44  | ambient_on_chiller              | -    | 0       | 1      |
-    | 45  | cabin_on_chiller                | -    | 0       | 1      |
-    | 46  | thermal_battery_on_htc          | -    | 0       | 1      |
-    | 47  | thermal_battery_on_chiller      | -    | 0       | 1      |
-    | 48  | previous_battery                | -    | -1      | 1      |
-    | 49  | previous_motor                  | -    | -1      | 1      |
-    | 50  | previous_transmission           | -    | -1      | 1      |
-    | 51  | previous_ambient                | -    | -1      | 1      |
-    | 52  | previous_thermal_battery        | -    | -1      | 1      |
-    | 53  | previous_cabin                  | -    | -1      | 1      |
-    | 54  | previous_ptc                    | -    | -1      | 1      |
-    | 55  | previous_compressor_power       | -    | -1      | 1      |
+    | 5   | ambient_humidity_ratio          | kg/kg | 0       | 0.04   |
+    | 6   | cabin_humidity_ratio            | kg/kg | 0       | 0.04   |
+    | 7   | cabin_co2_ppm                   | ppm  | 400     | 5000   |
+    | 8   | windscreen_fog_margin_k         | K    | -40     | 60     |
+    | 9   | battery_temperature_degc        | degC | -40     | 60     |
+    | 10  | motor_temperature_degc          | degC | -40     | 120    |
+    | 11  | transmission_temperature_degc   | degC | -40     | 120    |
+    | 12  | thermal_battery_temperature_degc | degC | -40     | 100    |
+    | 13  | htc_supply_temperature_degc     | degC | -40     | 100    |
+    | 14  | htc_return_temperature_degc     | degC | -40     | 100    |
+    | 15  | chiller_supply_temperature_degc | degC | -40     | 60     |
+    | 16  | chiller_return_temperature_degc | degC | -40     | 60     |
+    | 17  | htc_flow_kg_s                   | kg/s | 0       | 0.5    |
+    | 18  | chiller_flow_kg_s               | kg/s | 0       | 0.5    |
+    | 19  | condensing_pressure_bar         | bar  | 0       | 32     |
+    | 20  | evaporating_pressure_bar        | bar  | 0       | 16     |
+    | 21  | discharge_temperature_degc      | degC | -40     | 160    |
+    | 22  | compressor_speed_rev_s          | rev/s | 0       | 150    |
+    | 23  | soc                             | -    | 0       | 1      |
+    | 24  | battery_charge_limit_w          | W    | 0       | 150000 |
+    | 25  | battery_discharge_limit_w       | W    | 0       | 250000 |
+    | 26  | battery_power_w                 | W    | -200000 | 200000 |
+    | 27  | compressor_power_w              | W    | 0       | 8000   |
+    | 28  | ptc_power_w                     | W    | 0       | 8000   |
+    | 29  | auxiliary_power_w               | W    | 0       | 2000   |
+    | 30  | condenser_heat_flow_w           | W    | 0       | 20000  |
+    | 31  | evaporator_heat_flow_w          | W    | 0       | 20000  |
+    | 32  | cabin_htc_heat_flow_w           | W    | -10000  | 10000  |
+    | 33  | cabin_chiller_heat_flow_w       | W    | -10000  | 10000  |
+    | 34  | battery_htc_heat_flow_w         | W    | -10000  | 10000  |
+    | 35  | battery_chiller_heat_flow_w     | W    | -10000  | 10000  |
+    | 36  | ambient_htc_heat_flow_w         | W    | -30000  | 30000  |
+    | 37  | ambient_chiller_heat_flow_w     | W    | -30000  | 30000  |
+    | 38  | motor_chiller_heat_flow_w       | W    | -10000  | 10000  |
+    | 39  | transmission_chiller_heat_flow_w | W    | -10000  | 10000  |
+    | 40  | solar_gain_w                    | W    | 0       | 1500   |
+    | 41  | occupants                       | -    | 0       | 5      |
+    | 42  | cabin_on_htc                    | -    | 0       | 1      |
+    | 43  | battery_on_htc                  | -    | 0       | 1      |
+    | 44  | ambient_on_htc                  | -    | 0       | 1      |
+    | 45  | motor_on_chiller                | -    | 0       | 1      |
+    | 46  | transmission_on_chiller         | -    | 0       | 1      |
+    | 47  | battery_on_chiller              | -    | 0       | 1      |
+    | 48  | ambient_on_chiller              | -    | 0       | 1      |
+    | 49  | cabin_on_chiller                | -    | 0       | 1      |
+    | 50  | thermal_battery_on_htc          | -    | 0       | 1      |
+    | 51  | thermal_battery_on_chiller      | -    | 0       | 1      |
+    | 52  | previous_battery                | -    | -1      | 1      |
+    | 53  | previous_motor                  | -    | -1      | 1      |
+    | 54  | previous_transmission           | -    | -1      | 1      |
+    | 55  | previous_ambient                | -    | -1      | 1      |
+    | 56  | previous_thermal_battery        | -    | -1      | 1      |
+    | 57  | previous_cabin                  | -    | -1      | 1      |
+    | 58  | previous_ptc                    | -    | -1      | 1      |
+    | 59  | previous_compressor_power       | -    | -1      | 1      |
+    | 60  | previous_recirculation          | -    | -1      | 1      |
+    | 61  | previous_blower_level           | -    | -1      | 1      |
+    | 62  | previous_windscreen_share       | -    | -1      | 1      |
 
     Bounds hold for every built-in car with the default actions. `decode(observation)` gives plain units,
     `clipped_shares()` says how often a value was beyond its bounds.
 
-    This is what a car without navigation can know. Further rows by name: `preview` (the speed 2 to 80 s
-    ahead), `time_left_s`, `distance_behind_m`, and every other signal of the plant
-    (`hp_gym._core.observation_table()`).
+    This is what a car without navigation can know, sensors for windscreen and air quality included. Further
+    rows by name: `preview` (the speed 2 to 80 s ahead), `time_left_s`, `distance_behind_m`, and every other
+    signal of the plant (`hp_gym._core.observation_table()`).
 
     ## Rewards
 
@@ -148,9 +160,11 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     - `reward_heat_left`: at arrival, a credit for the heat stored since the start in cabin, battery (up to 20
       degC), coolant loops and thermal battery. 0 by default. In a climate hotter than 22 degC it is the heat
       that is gone from cabin, loops and thermal battery.
-    - `reward_penalties`: 1000 points for an hour that a trip takes beyond its cycle, more than slower driving
-      saves; 500 points for a trip that ends before arrival; optional prices for a battery outside its window
-      and for stops of the compressor that a protection forced.
+    - `reward_penalties`: 60 points for an hour of fog on the windscreen and 20 for an hour of fog 1 K deep,
+      0.02 for an hour of 1 ppm of carbon dioxide above 1000, while somebody is in the car; 1000 points for an
+      hour that a trip takes beyond its cycle, more than slower driving saves; 500 points for a trip that ends
+      before arrival; optional prices for a battery outside its window and for stops of the compressor that a
+      protection forced.
 
     `reward` chooses among `balanced`, `energy`, `comfort`, `stored-heat` and `durable`, a file, or single
     weights (`{"base": "balanced", "discomfort_per_k_h": 8.0}`). A Python function of named parts is a reward
@@ -172,8 +186,8 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     ## Starting State
 
     A car parked for long, everything at the same temperature except where the scenario says otherwise. Trips
-    come from a scenario (always the same) or are drawn from a distribution: `train-v1` (-20 to 40 degC, city,
-    mixed and motorway cycles, whole or in parts) by default, `test-v0` (other cycles, other climates) for a
+    come from a scenario (always the same) or are drawn from a distribution: `train-v2` (-20 to 40 degC, city,
+    mixed and motorway cycles, whole or in parts) by default, `test-v1` (other cycles, other climates) for a
     held-out test.
 
     ## Episode End
@@ -201,11 +215,11 @@ class EVHeatPumpEnv(gym.Env[NDArray[np.float32], Any]):
     |----------------------|--------------|------------------------------------------------------------------|
     | `render_mode`        | `None`       | `"rgb_array"` or `"human"`                                       |
     | `scenario`           | `None`       | id or path of a scenario, always driven                          |
-    | `distribution`       | `"train-v1"` | name or path of a distribution that trips are drawn from         |
+    | `distribution`       | `"train-v2"` | name or path of a distribution that trips are drawn from         |
     | `render_size`        | `(960, 540)` | width and height of the picture                                  |
     | `vehicle`            | `None`       | name or path of a vehicle; that of the scenario by default       |
     | `continuous`         | `False`      | `Box` instead of `MultiDiscrete` (`EVHeatPumpContinuous-v0`)     |
-    | `actions`            | `"default"`  | `"default"`, `"hpcu"`, `"all"` or names of actuators             |
+    | `actions`            | `"default"`  | `"default"`, `"heat"`, `"hpcu"`, `"all"` or names of actuators   |
     | `action_options`     | `None`       | options of choices by name, in an order of one's own             |
     | `observations`       | `"default"`  | names of rows or groups (`"default"`, `"preview"`)               |
     | `observation_bounds` | `None`       | lowest and highest value of rows by name, for a wider car        |

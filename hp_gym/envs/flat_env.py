@@ -25,14 +25,15 @@ class EVHeatPumpFlatEnv(EVHeatPumpEnv):
     Args:
         modes: What can be chosen, options by the names of actions; by default those of `MODES` that the
             vehicle can do.
-        **chosen: Arguments of `EVHeatPumpEnv`.
+        **chosen: Arguments of `EVHeatPumpEnv`; `actions` is `"heat"` here unless it is given, so that the
+            rule-based controller moves the cabin's air.
 
     Raises:
         ConfigurationError: The environment is continuous, or a mode names what the vehicle lacks.
     """
 
     def __init__(self, *, modes: Sequence[Mode] | None = None, **chosen: Any) -> None:
-        super().__init__(**chosen)
+        super().__init__(**{"actions": "heat", **chosen})
         self._modes = Modes(modes, self.option_names, self._episode.option_counts())
         self.modes = self._modes.modes
         self.action_space = self._modes.space
@@ -82,7 +83,7 @@ class EVHeatPumpFlatVectorEnv(EVHeatPumpVectorEnv):
     """
 
     def __init__(self, num_envs: int = 1, *, modes: Sequence[Mode] | None = None, **chosen: Any) -> None:
-        super().__init__(num_envs, **chosen)
+        super().__init__(num_envs, **{"actions": "heat", **chosen})
         self._modes = Modes(modes, self.option_names, self._core.option_counts())
         self.modes = self._modes.modes
         self.single_action_space = self._modes.space

@@ -21,7 +21,7 @@ from hp_gym.overrides import Overrides, Value, assignments
 Action: TypeAlias = NDArray[np.int64] | NDArray[np.float32]
 Name: TypeAlias = str | os.PathLike[str]
 
-DEFAULT_DISTRIBUTION: Final = "train-v1"
+DEFAULT_DISTRIBUTION: Final = "train-v2"
 
 PARTS: Final = tuple(_core.reward_parts())
 """Names of the parts of a reward, in points."""

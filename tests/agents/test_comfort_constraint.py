@@ -68,13 +68,13 @@ def test_the_rules_themselves_are_within_the_constraint_and_idle_vehicles_are_no
     made = training()
     rules = constraint(made)
     excess_k = rules.update(
-        100, lambda observations, _: np.zeros((len(observations), 8), dtype=np.int64), masked=False
+        100, lambda observations, _: np.zeros((len(observations), 11), dtype=np.int64), masked=False
     )
     assert excess_k[0] > 5.0
     # As far as a step and the bound allow.
     assert rules.multipliers[0] == pytest.approx(0.2)
     for number in range(2, 6):
-        rules.update(100 * number, lambda seen, _: np.zeros((len(seen), 8), dtype=np.int64), masked=False)
+        rules.update(100 * number, lambda seen, _: np.zeros((len(seen), 11), dtype=np.int64), masked=False)
     assert rules.multipliers.max() == 0.5
     assert not rules.is_due(599)
     assert rules.is_due(600)
@@ -86,7 +86,9 @@ def test_damping_passes_with_the_violation_and_a_start_lasts() -> None:
             training("comfort_constraint.start=0.1", "comfort_constraint.largest=9.0", *changes)
         )
         np.testing.assert_array_equal(weighed.multipliers, 0.1)
-        excess_k = weighed.update(100, lambda seen, _: np.zeros((len(seen), 8), dtype=np.int64), masked=False)
+        excess_k = weighed.update(
+            100, lambda seen, _: np.zeros((len(seen), 11), dtype=np.int64), masked=False
+        )
         return np.stack([np.clip(excess_k, -1.0, 1.0), weighed.multipliers, weighed.notes()["integrals"]])
 
     plain, damped = after(), after("comfort_constraint.damping_per_k=0.7")
@@ -107,7 +109,7 @@ def test_a_margin_asks_for_more_comfort_but_not_for_more_than_its_share() -> Non
 def test_notes_bring_the_multipliers_back() -> None:
     made = training()
     first = constraint(made)
-    first.update(100, lambda seen, _: np.zeros((len(seen), 8), dtype=np.int64), masked=False)
+    first.update(100, lambda seen, _: np.zeros((len(seen), 11), dtype=np.int64), masked=False)
     assert made.comfort_constraint is not None
     again = ComfortConstraint(made, made.comfort_constraint, first.notes())
     np.testing.assert_array_equal(again.multipliers, first.multipliers)

@@ -68,7 +68,7 @@ def test_an_exported_policy_decides_as_before_and_can_be_loaded_again(policy: An
     assert told["largest_output_difference"] < 1e-5
     again = policies.load(target)
     assert again.metadata == original.metadata
-    observations = np.random.default_rng(1).uniform(-1, 1, (50, 56)).astype(np.float32)
+    observations = np.random.default_rng(1).uniform(-1, 1, (50, 63)).astype(np.float32)
     np.testing.assert_array_equal(again.outputs(observations), original.outputs(observations))
 
 
@@ -101,7 +101,7 @@ def test_the_file_needs_no_python_of_ours(tmp_path: Path) -> None:
     policies.save(tmp_path / "policy.safetensors", policy)
     assert run(tmp_path / "policy.safetensors", "--out", tmp_path / "policy.onnx").exit_code == 0
     session = onnxruntime.InferenceSession(tmp_path / "policy.onnx")
-    observations = np.zeros((3, 56), np.float32)
+    observations = np.zeros((3, 63), np.float32)
     actions, _ = session.run(None, {"observations": observations})
     np.testing.assert_array_equal(actions, policy.predict(observations))
     assert actions.dtype == np.int64
@@ -153,7 +153,7 @@ def test_zip_files_that_do_not_fit_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "model.zip"
     untrained().save(path)
     for arguments, reason in (
-        (["--observations", "default", "--observations", "time_left_s"], "but the environment has 57 rows"),
+        (["--observations", "default", "--observations", "time_left_s"], "but the environment has 64 rows"),
         (["--continuous"], "the model acts on MultiDiscrete"),
         (["--actions", "wings"], "unknown action `wings`"),
     ):

@@ -152,7 +152,7 @@ def test_a_file_keeps_everything(policy: SavedPolicy, file: Path) -> None:
 def test_deciding_needs_no_torch(file: Path) -> None:
     code = (
         "import sys, numpy; from hp_gym.agents import policies; policy = policies.load(sys.argv[1]); "
-        "policy.predict(numpy.zeros((2, 56), numpy.float32)); assert 'torch' not in sys.modules"
+        "policy.predict(numpy.zeros((2, 63), numpy.float32)); assert 'torch' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code, str(file)], check=True)
 
@@ -172,7 +172,7 @@ def test_recurrent_and_other_networks_are_refused() -> None:
 
 def test_another_environment_than_the_model_s_is_refused() -> None:
     model = ppo(LEVELS)
-    with pytest.raises(policies.PolicyError, match=r"observes \(56,\), but the environment has 57 rows"):
+    with pytest.raises(policies.PolicyError, match=r"observes \(63,\), but the environment has 64 rows"):
         from_sb3(model, PolicyEnvironment.resolve(observations=("default", "time_left_s")))
     with pytest.raises(policies.PolicyError, match="acts on MultiDiscrete"):
         from_sb3(model, PolicyEnvironment.resolve(continuous=True))
@@ -274,7 +274,7 @@ def test_metadata_that_do_not_fit_are_refused(file: Path, change: Any, reason: s
         (lambda numbers: numbers.update({"layers.0.bias": np.zeros(64)}), r"float64\[64\]"),
         (lambda numbers: numbers["layers.0.bias"].__setitem__(0, np.nan), "finite numbers"),
         (
-            lambda numbers: numbers.update({"observation.mean": np.zeros(56)}),
+            lambda numbers: numbers.update({"observation.mean": np.zeros(63)}),
             r"`observation\.clip` is missing",
         ),
     ],
@@ -316,7 +316,7 @@ def test_a_policy_of_another_car_keeps_the_names_of_its_options(tmp_path: Path) 
 
 
 def test_observations_of_another_shape_are_refused(policy: SavedPolicy) -> None:
-    with pytest.raises(policies.PolicyError, match=r"the shape \(2, 3\), but the policy takes \(n, 56\)"):
+    with pytest.raises(policies.PolicyError, match=r"the shape \(2, 3\), but the policy takes \(n, 63\)"):
         policy.predict(np.zeros((2, 3), np.float32))
 
 

@@ -47,7 +47,7 @@ def test_the_message_of_an_error_comes_out_of_a_pool_of_processes() -> None:
 
 @pytest.fixture(scope="module")
 def env() -> EVHeatPumpEnv:
-    env = EVHeatPumpEnv(distribution="train-v1", sensor_noise=0.1)
+    env = EVHeatPumpEnv(distribution="train-v2", sensor_noise=0.1)
     env.reset(seed=3)
     return env
 
@@ -70,7 +70,7 @@ WRONG_ACTIONS = st.one_of(
     .map(np.array),
     st.tuples(st.integers(0, 7), WRONG_LEVELS).map(lambda at: np.eye(8, dtype=np.int64)[at[0]] * at[1]),
     st.just(np.full(8, np.nan)),
-    st.just(np.zeros(8, dtype=np.complex128)),
+    st.just(np.zeros(11, dtype=np.complex128)),
     st.sampled_from([None, "up", {}, [[]], object()]),
 )
 NAMES = st.text(min_size=1, max_size=20).filter(lambda name: name not in hp_gym.names("scenario"))
@@ -128,7 +128,7 @@ def test_after_any_error_the_states_of_all_environments_are_the_same(
     place = data.draw(st.integers(0, NUMBER - 1))
 
     def one_wrong_action() -> None:
-        wrong = np.zeros((NUMBER, 8), dtype=np.int64)
+        wrong = np.zeros((NUMBER, 11), dtype=np.int64)
         wrong[place, data.draw(st.integers(0, 7))] = data.draw(WRONG_LEVELS)
         envs.step(wrong)
 
@@ -188,7 +188,7 @@ def test_a_panic_is_an_internal_error_until_the_environment_is_reset_or_restored
 ) -> None:
     env = EVHeatPumpEnv(scenario=CASE)
     env.reset(seed=0)
-    action = np.zeros(8, dtype=np.int64)
+    action = np.zeros(11, dtype=np.int64)
     for _ in range(5):
         env.step(action)
     good = env.get_state()
@@ -216,11 +216,11 @@ def test_a_panic_is_an_internal_error_until_the_environment_is_reset_or_restored
 def test_a_panic_in_one_of_many_environments_leaves_all_refused_until_all_are_begun_anew() -> None:
     alone = EVHeatPumpEnv(scenario=CASE)
     alone.reset(seed=0)
-    action = np.zeros(8, dtype=np.int64)
+    action = np.zeros(11, dtype=np.int64)
     bad = breaking_state(alone, action)
     envs = EVHeatPumpVectorEnv(40, threads=2, scenario=CASE)
     envs.reset(seed=0)
-    actions = np.zeros((40, 8), dtype=np.int64)
+    actions = np.zeros((40, 11), dtype=np.int64)
     good = envs.get_state()
     expected = envs.step(actions)[0]
     # States of a single environment are those of many.
@@ -238,10 +238,10 @@ def test_a_panic_in_one_of_many_environments_leaves_all_refused_until_all_are_be
 @pytest.mark.parametrize(
     ("lists", "threads", "message"),
     [
-        (([None] * 2, ["train-v1"], [None] * 2), 1, "are 2, 1 and 2, but must be one each"),
+        (([None] * 2, ["train-v2"], [None] * 2), 1, "are 2, 1 and 2, but must be one each"),
         (([], [], []), 1, "are 0, 0 and 0"),
-        (([None] * 2, ["train-v1"] * 2, [None] * 2), 0, "threads is 0, but must be between 1 and"),
-        (([None] * 2, ["train-v1"] * 2, [None] * 2), 3, "threads is 3, but must be between 1 and the 2"),
+        (([None] * 2, ["train-v2"] * 2, [None] * 2), 0, "threads is 0, but must be between 1 and"),
+        (([None] * 2, ["train-v2"] * 2, [None] * 2), 3, "threads is 3, but must be between 1 and the 2"),
     ],
 )
 def test_the_core_refuses_lists_and_threads_that_do_not_fit(

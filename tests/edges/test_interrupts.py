@@ -292,7 +292,7 @@ def test_2000_threads_for_8_environments_are_not_started() -> None:
     before = len(list(Path("/proc/self/task").iterdir()))
     envs = hp_gym_vector(8, threads=2000)
     envs.reset(seed=0)
-    envs.step(np.zeros((8, 8), dtype=np.int64))
+    envs.step(np.zeros((8, 11), dtype=np.int64))
     assert len(list(Path("/proc/self/task").iterdir())) - before <= 8
 
 

@@ -17,7 +17,7 @@ def distribution(name: str) -> str:
 
 def test_a_training_trip_strands_only_by_what_a_controller_does() -> None:
     """A vehicle whose heat pump and PTC stay off arrives, however cold it is."""
-    envs = EVHeatPumpVectorEnv(600, distribution="train-v1")
+    envs = EVHeatPumpVectorEnv(600, distribution="train-v2", actions="heat")
     off = np.zeros((600, 8), dtype=np.int64)
     driven = drive(envs, range(600), lambda *_: off)
     assert driven.ambient_degc.min() < -19.0
@@ -61,7 +61,7 @@ def test_test_trips_are_those_of_the_first_version() -> None:
     ids=str,
 )
 def test_a_wrong_value_is_named(old: str, new: str, message: str, tmp_path: Path) -> None:
-    text = distribution("train-v1")
+    text = distribution("train-v2")
     assert old in text
     path = tmp_path / "mine.toml"
     path.write_text(text.replace(old, new, 1))
@@ -71,8 +71,8 @@ def test_a_wrong_value_is_named(old: str, new: str, message: str, tmp_path: Path
 
 def test_cycles_by_name_alone_are_refused_with_their_place(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
-    head = distribution("train-v1").split("[ranges]")[0]
-    ranges = distribution("train-v1").split("[ranges]")[1].split("[[cycles]]")[0]
+    head = distribution("train-v2").split("[ranges]")[0]
+    ranges = distribution("train-v2").split("[ranges]")[1].split("[[cycles]]")[0]
     path.write_text(f'{head}cycles = ["udds"]\n[ranges]{ranges}')
     with pytest.raises(hp_gym.ConfigurationError, match=r"mine.toml: `cycles.*expected a table with `name`"):
         EVHeatPumpEnv(distribution=path)

@@ -128,8 +128,8 @@ def test_parts_of_the_reward_add_up_to_it() -> None:
 @settings(max_examples=25)
 @given(seed=st.integers(0, 2**31))
 def test_a_mask_bit_equals_what_is_granted_in_the_first_second(seed: int) -> None:
-    """Each option of each connection is tried from the same state."""
-    env: Any = make()
+    """Each option of each connection is tried from the same state, the air moved by the rules."""
+    env: Any = make(actions="heat")
     env.reset(seed=seed)
     env.action_space.seed(seed)
     for _ in range(40):
@@ -151,6 +151,30 @@ def test_a_mask_bit_equals_what_is_granted_in_the_first_second(seed: int) -> Non
             wanted = {"isolated": 0, "htc": HTC, "chiller": CHILLER}[circuit]
             assert masks[starts[row] + option] == (granted == wanted), (name, circuit)
     assert masks[starts[6] :].all()
+
+
+@settings(max_examples=10)
+@given(seed=st.integers(0, 2**31))
+def test_a_masked_connection_of_the_cabin_is_granted_with_no_air_that_an_agent_may_choose(seed: int) -> None:
+    """Fresh or recirculated: one of both ends is granted where the mask says so, none where it does not."""
+    env: Any = make()
+    env.reset(seed=seed)
+    env.action_space.seed(seed)
+    for _ in range(40):
+        env.step(env.action_space.sample())
+    inner: Any = env.unwrapped
+    state, masks, names = inner.get_state(), inner.action_masks(), inner.action_names
+    starts = np.concatenate([[0], np.cumsum(env.action_space.nvec)[:-1]])
+    cabin, recirculation, blower = (names.index(name) for name in ("cabin", "recirculation", "blower_level"))
+    for option, circuit in enumerate((0, HTC, CHILLER)):
+        granted = []
+        for share in range(11):
+            inner.set_state(state)
+            action = env.action_space.sample()
+            action[[cabin, recirculation, blower]] = option, share, 10
+            env.step(action)
+            granted.append(inner.signals()["cabin_connection"] == circuit)
+        assert masks[starts[cabin] + option] == any(granted), (circuit, granted)
 
 
 @pytest.mark.parametrize("copier", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])
@@ -197,7 +221,7 @@ def test_a_state_is_refused_by_other_settings_and_when_damaged() -> None:
 
 
 def test_an_action_is_held_for_the_control_interval() -> None:
-    slow, fast = make(control_interval_s=10), make()
+    slow, fast = make(control_interval_s=10, actions="heat"), make(actions="heat")
     for env in (slow, fast):
         env.reset(seed=4)
     action = np.array([0, 1, 0, 1, 0, 1, 1, 6])
@@ -240,7 +264,8 @@ def test_without_a_seed_two_environments_drive_different_trips() -> None:
 
 
 def test_an_empty_battery_ends_the_trip_at_a_price() -> None:
-    env = make(scenario="jeffs2019/case1-1", overrides={"scenario.initial.state_of_charge_pct": 5.0})
+    nearly_empty = {"scenario.initial.state_of_charge_pct": 5.0}
+    env = make(scenario="jeffs2019/case1-1", overrides=nearly_empty, actions="heat")
     env.reset(seed=0)
     action = np.array([0, 0, 0, 0, 0, 1, 1, 0])
     while True:
@@ -255,7 +280,8 @@ def test_an_empty_battery_ends_the_trip_at_a_price() -> None:
 
 def test_a_weak_car_arrives_late_with_the_whole_way_driven_and_pays_for_it() -> None:
     weak = {"scenario.cycle": "us06", "vehicle.motor.maximum_mechanical_power_w": 40_000.0}
-    env = make(scenario="jeffs2019/case1-1", overrides=weak, observations=["default", "distance_behind_m"])
+    rows = ["default", "distance_behind_m"]
+    env = make(scenario="jeffs2019/case1-1", overrides=weak, observations=rows, actions="heat")
     env.reset(seed=0)
     inner: Any = env.unwrapped
     duration_s, rewards, behind_m, terminated = inner.trip()["duration_s"], [], [], False
@@ -291,7 +317,7 @@ def test_flat_actions_are_modes_of_the_same_environment() -> None:
     env.reset(seed=0)
     assert env.action_masks().shape == (len(MODES),)
     assert env.action_masks()[0]
-    plain: Any = make(scenario="jeffs2019/case1-1").unwrapped
+    plain: Any = make(scenario="jeffs2019/case1-1", actions="heat").unwrapped
     plain.reset(seed=0)
     for mode, options in enumerate(MODES):
         named = plain.option_names
@@ -313,7 +339,7 @@ def test_flat_actions_are_modes_of_the_same_environment() -> None:
 
 
 def test_pictures_are_drawn_in_the_size_asked_for() -> None:
-    env = make(scenario="jeffs2019/case1-1", render_mode="rgb_array", render_size=(640, 360))
+    env = make(scenario="jeffs2019/case1-1", actions="heat", render_mode="rgb_array", render_size=(640, 360))
     env.reset(seed=0)
     before: Any = env.render()
     for _ in range(60):

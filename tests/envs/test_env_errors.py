@@ -27,7 +27,10 @@ GOOD = np.array([0, 0, 0, 0, 0, 0, 0, 0])
         ({"reward": "fame"}, "unknown reward `fame`; available: balanced"),
         ({"reward": {"energy_per_kwh": -1.0}}, r"`energy_per_kwh` is -1, but must be between 0 and 1000"),
         ({"reward": {"money": 1.0}}, "unknown field `money`"),
-        ({"actions": "everything"}, "unknown set of actions `everything`; available: default, hpcu, all"),
+        (
+            {"actions": "everything"},
+            "unknown set of actions `everything`; available: default, heat, hpcu, all",
+        ),
         ({"actions": ["heater"]}, "`heater`; available: battery, motor"),
         ({"actions": ["ptc", "ptc"]}, "`ptc` twice"),
         ({"actions": []}, "at least one action"),
@@ -103,7 +106,7 @@ VALUES = [
 def test_a_wrong_action_is_refused_and_changes_nothing(
     continuous: bool, action: Any, error: type[Exception], message: str
 ) -> None:
-    env = EVHeatPumpEnv(scenario="jeffs2019/case1-1", continuous=continuous)
+    env = EVHeatPumpEnv(scenario="jeffs2019/case1-1", continuous=continuous, actions="heat")
     env.reset(seed=0)
     before = env.get_state()
     with pytest.raises(error, match=message):
@@ -113,7 +116,7 @@ def test_a_wrong_action_is_refused_and_changes_nothing(
 
 @pytest.mark.parametrize("other", [np.int32, np.uint8])
 def test_other_integers_and_strides_mean_the_same_action(other: type) -> None:
-    env = EVHeatPumpEnv(scenario="jeffs2019/case1-1")
+    env = EVHeatPumpEnv(scenario="jeffs2019/case1-1", actions="heat")
     env.reset(seed=0)
     state = env.get_state()
     action = np.array([1, 1, 0, 1, 0, 1, 1, 9])
@@ -124,7 +127,7 @@ def test_other_integers_and_strides_mean_the_same_action(other: type) -> None:
 
 
 def test_step_before_reset_after_the_end_and_after_close() -> None:
-    env = EVHeatPumpEnv(scenario="ours/commute-minus5", control_interval_s=3600)
+    env = EVHeatPumpEnv(scenario="ours/commute-minus5", control_interval_s=3600, actions="heat")
     with pytest.raises(ResetNeeded, match=r"reset\(\) first"):
         env.step(GOOD)
     env.reset(seed=0)
@@ -139,7 +142,7 @@ def test_step_before_reset_after_the_end_and_after_close() -> None:
 
 
 def test_an_unknown_reset_option_or_scenario_leaves_the_trip_as_it_is() -> None:
-    env = EVHeatPumpEnv(scenario="jeffs2019/case1-1")
+    env = EVHeatPumpEnv(scenario="jeffs2019/case1-1", actions="heat")
     env.reset(seed=0)
     env.step(GOOD)
     before = env.get_state()
@@ -153,7 +156,7 @@ def test_an_unknown_reset_option_or_scenario_leaves_the_trip_as_it_is() -> None:
 
 
 def test_one_wrong_action_stops_a_vector_step_before_any_environment_moves() -> None:
-    envs = EVHeatPumpVectorEnv(3, scenario="jeffs2019/case1-1")
+    envs = EVHeatPumpVectorEnv(3, scenario="jeffs2019/case1-1", actions="heat")
     with pytest.raises(ResetNeeded):
         envs.step(np.zeros((3, 8), dtype=np.int64))
     envs.reset(seed=0)

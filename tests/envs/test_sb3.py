@@ -72,9 +72,9 @@ def test_methods_and_attributes_of_environments() -> None:
     envs = SB3VecEnv(3, scenario="jeffs2019/case1-1", **SHORT)
     envs.reset()
     masks = envs.env_method("action_masks")
-    assert [mask.shape for mask in masks] == [(29,)] * 3
+    assert [mask.shape for mask in masks] == [(62,)] * 3
     assert envs.has_attr("action_masks")
-    assert envs.get_attr("action_masks", [1])[0]().shape == (29,)
+    assert envs.get_attr("action_masks", [1])[0]().shape == (62,)
     states = envs.env_method("get_state", indices=[0])
     envs.step(np.stack(envs.env_method("rule_based_action")))
     envs.env_method("set_state", states[0], indices=[1])

@@ -176,7 +176,7 @@ def test_a_copy_continues_bit_for_bit(copier: Any) -> None:
 
 
 def test_states_go_back_all_or_none() -> None:
-    envs = EVHeatPumpVectorEnv(2, **SHORT)
+    envs = EVHeatPumpVectorEnv(2, **SHORT, actions="heat")
     envs.reset(seed=0)
     states = envs.get_state()
     actions = np.zeros((2, 8), dtype=np.int64)
@@ -190,7 +190,7 @@ def test_states_go_back_all_or_none() -> None:
 
 
 def test_without_autoreset_a_step_after_the_end_names_the_environments() -> None:
-    envs = EVHeatPumpVectorEnv(2, autoreset_mode="Disabled", max_episode_steps=1)
+    envs = EVHeatPumpVectorEnv(2, autoreset_mode="Disabled", max_episode_steps=1, actions="heat")
     envs.reset(seed=0)
     actions = np.zeros((2, 8), dtype=np.int64)
     envs.step(actions)
@@ -207,7 +207,7 @@ def test_the_metadata_name_the_autoreset_mode() -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="no fork on Windows")
 @pytest.mark.filterwarnings("ignore:This process:DeprecationWarning")
 def test_a_forked_process_steps_on_with_threads_of_its_own() -> None:
-    envs = EVHeatPumpVectorEnv(64, threads=2)
+    envs = EVHeatPumpVectorEnv(64, threads=2, actions="heat")
     envs.reset(seed=0)
     actions = np.zeros((64, 8), dtype=np.int64)
     envs.step(actions)

@@ -43,10 +43,9 @@ def test_every_car_is_an_environment(vehicle: str) -> None:
 
 
 def _core_default(architecture: str) -> list[str]:
-    """Connections, heaters, valves of exchangers and compressor: what has options, and the compressor."""
-    return [
-        name for name, _, options, _ in _core.actuators(architecture) if options or name == "compressor_power"
-    ]
+    """Connections, heaters, valves of exchangers: what has options; compressor, and the cabin's air."""
+    levels = {"compressor_power", "recirculation", "blower_level", "windscreen_share"}
+    return [name for name, _, options, _ in _core.actuators(architecture) if options or name in levels]
 
 
 @pytest.mark.parametrize("vehicle", VEHICLES)
@@ -131,8 +130,8 @@ def test_a_misspelt_row_comes_with_the_nearest() -> None:
 
 def test_options_stand_in_an_order_of_ones_own() -> None:
     order = {"battery": ["isolated", "chiller", "htc"]}
-    ours: Any = gym.make("EVHeatPump-v0", scenario=SCENARIO, action_options=order).unwrapped
-    plain: Any = gym.make("EVHeatPump-v0", scenario=SCENARIO).unwrapped
+    ours: Any = gym.make("EVHeatPump-v0", scenario=SCENARIO, actions="heat", action_options=order).unwrapped
+    plain: Any = gym.make("EVHeatPump-v0", scenario=SCENARIO, actions="heat").unwrapped
     assert ours.option_names["battery"] == ("isolated", "chiller", "htc")
     for env in (ours, plain):
         env.reset(seed=0)

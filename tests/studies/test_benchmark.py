@@ -78,7 +78,7 @@ class Thirsty(Same):
 
 class Wrong:
     def predict(self, observations):
-        return [[9] * 8] * len(observations)
+        return [[9] * 11] * len(observations)
 
 class Raising:
     def predict(self, observations):
@@ -308,7 +308,7 @@ def test_new_contents_replace_folders_and_keep_what_has_no_successor(tmp_path: P
 
 def test_held_out_grid_shares_no_cycle_with_training_and_covers_every_band() -> None:
     held_out = grid.load()
-    training = hp_gym._core.config_text("distribution of episodes", "train-v1")
+    training = hp_gym._core.config_text("distribution of episodes", "train-v2")
     assert all(f'"{scenario.cycle.name}"' not in training for scenario in held_out.scenarios)
     ambients_degc = {scenario.ambient_temperature_degc for scenario in held_out.scenarios}
     assert ambients_degc == set(range(-20, 45, 5))

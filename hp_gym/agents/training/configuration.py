@@ -46,7 +46,7 @@ class Environments(_Table):
 class Environment(_Table):
     """Arguments of `EVHeatPumpEnv`; see there."""
 
-    distribution: str = "train-v1"
+    distribution: str = "train-v2"
     vehicle: str | None = None
     control_interval_s: Count = 1
     actions: str | list[str] = "default"

@@ -34,9 +34,9 @@ BANDS: Final = (Band(-20, -10), Band(-10, 0), Band(0, 10), Band(10, 20), Band(20
 
 @contextmanager
 def training_distribution(band: Band) -> Generator[Path]:
-    """Gives a file with the trips of `train-v1` in a band."""
+    """Gives a file with the trips of `train-v2` in a band."""
     document = tomlkit.document()
-    document["base"] = "train-v1"
+    document["base"] = "train-v2"
     document["description"] = f"Training trips, {band.title}"
     document["ranges"] = {
         "ambient_low_degc": float(band.low_degc),

@@ -27,12 +27,40 @@ PAPER: Final[Choices] = {
 """What Jeffs et al. 2019 choose: all sources, battery heated, PTC whenever it may (sections 2.2 to 2.4)."""
 
 
+MODERN: Final[Choices] = {
+    **PAPER,
+    "strategy.battery": "isolate",
+    "controller.ptc_from_deviation_k": -1.0,
+    "controller.blower_level": 0.51,
+    "controller.heating_recirculation": 0.7,
+    "controller.options.heating_blower_band_k": 15.0,
+    "controller.options.least_blower_level": 0.3,
+    "controller.options.ptc_below_target_k": 0.5,
+    "controller.options.battery_after_cabin_band_k": 1.0,
+}
+"""What `hpcu-modern` has beyond the paper's rules; its other options stay as they are."""
+
+COOLING: Final[Choices] = {
+    "controller.cooling_recirculation": 0.7,
+    "controller.cooling_blower_level": 1.0,
+    "controller.cooling_chiller_set_point_degc": 3.0,
+    "controller.options.cooling_blower_band_k": 2.0,
+}
+"""What acts in a climate that is cooled in."""
+
+
+def base_of(choices: Choices) -> str:
+    """Name of the rules that choices are for: those with options, or the paper's."""
+    return "hpcu-modern" if choices.keys() - PAPER.keys() else "hpcu"
+
+
 def to_toml(description: str, bands: Sequence[tuple[Band, Choices]]) -> str:
-    """Returns the controller file of choices for each band, cold to hot."""
+    """Returns the controller file of choices for each band, cold to hot; all bands have one base."""
     document = tomlkit.document()
     for line in description.splitlines():
         document.add(tomlkit.comment(line))
-    document["base"] = "hpcu"
+    (base,) = {base_of(choices) for _, choices in bands}
+    document["base"] = base
     rows = tomlkit.aot()
     for index, (band, choices) in enumerate(bands):
         row = tomlkit.table()

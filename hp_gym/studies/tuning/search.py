@@ -1,16 +1,42 @@
 """The two searches: every combination of modes, and Optuna over modes, set points and thresholds."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import product
+from typing import Final
 
 import optuna
 
 from hp_gym.overrides import Value
 from hp_gym.studies.tuning.objective import Objective
-from hp_gym.studies.tuning.rule_choices import PAPER, Choices
+from hp_gym.studies.tuning.rule_choices import COOLING, MODERN, PAPER, Choices
 
 TREATMENTS = ("heat", "isolate", "source")
+
+COOLED_ABOVE_DEGC: Final = 20.0
+"""A band that reaches beyond is one that is cooled in."""
+
+RANGES: Final[Mapping[str, tuple[float, float]]] = {
+    "controller.cabin_set_point_degc": (17.0, 24.0),
+    "controller.htc_set_point_degc": (30.0, 90.0),
+    "controller.battery.heat_up_to_degc": (-20.0, 20.0),
+    "controller.ptc_from_deviation_k": (-20.0, 30.0),
+    "controller.blower_level": (0.3, 1.0),
+    "controller.heating_recirculation": (0.0, 0.9),
+    "controller.options.heating_blower_band_k": (2.0, 25.0),
+    "controller.options.least_blower_level": (0.2, 0.5),
+    "controller.options.ptc_below_target_k": (0.0, 5.0),
+    "controller.options.battery_after_cabin_band_k": (0.5, 5.0),
+}
+"""Set points and options of the rules, lowest and highest."""
+
+COOLING_RANGES: Final[Mapping[str, tuple[float, float]]] = {
+    "controller.cooling_recirculation": (0.0, 0.9),
+    "controller.cooling_blower_level": (0.4, 1.0),
+    "controller.cooling_chiller_set_point_degc": (0.0, 12.0),
+    "controller.options.cooling_blower_band_k": (0.5, 6.0),
+}
+"""Those that act in a climate that is cooled in."""
 
 Advance = Callable[[], None]
 """Called after each trial."""
@@ -67,7 +93,7 @@ def tuned(objective: Objective, start: Choices, trials: int, seed: int, advance:
 
     Args:
         objective: What to make large.
-        start: Choices tried first, after the paper's.
+        start: Choices tried first, after the modern ones and the same with the paper's target for the PTC.
         trials: Number of evaluations.
         seed: Seed of the sampler.
         advance: Called after each trial.
@@ -76,37 +102,26 @@ def tuned(objective: Objective, start: Choices, trials: int, seed: int, advance:
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     sampler = optuna.samplers.TPESampler(seed=seed, multivariate=True, n_startup_trials=max(10, trials // 8))
     study = optuna.create_study(direction="maximize", sampler=sampler)
-    for known in (PAPER, start):
-        study.enqueue_trial(dict(known))
+    cooled = objective.band.high_degc > COOLED_ABOVE_DEGC
+    modern = {**MODERN, **(COOLING if cooled else {})}
+    for known in ({}, {"strategy.battery": "heat"}, {k: v for k, v in start.items() if "strategy" in k}):
+        study.enqueue_trial({**modern, **known})
 
     def evaluate(trial: optuna.Trial) -> float:
-        choices = suggest(trial)
+        choices = suggest(trial, cooled=cooled)
         score = objective.score(choices)
         advance()
         return score
 
     study.optimize(evaluate, n_trials=trials)
-    paper_score = study.trials[0].value
-    if paper_score is None:
-        message = "the paper's choices could not be driven"
-        raise RuntimeError(message)
-    return Result(dict(study.best_params), study.best_value, paper_score, len(study.trials))
+    return Result(dict(study.best_params), study.best_value, objective.score(PAPER), len(study.trials))
 
 
-def suggest(trial: optuna.Trial) -> dict[str, Value]:
-    """Draws choices; the ranges hold the paper's and what a heat pump engineer would try."""
-    return {
-        "strategy.battery": trial.suggest_categorical("strategy.battery", TREATMENTS),
-        "strategy.ptc": trial.suggest_categorical("strategy.ptc", (True, False)),
-        "strategy.ambient": trial.suggest_categorical("strategy.ambient", (True, False)),
-        "strategy.motor": trial.suggest_categorical("strategy.motor", (True, False)),
-        "strategy.transmission": trial.suggest_categorical("strategy.transmission", (True, False)),
-        "controller.cabin_set_point_degc": trial.suggest_float("controller.cabin_set_point_degc", 17.0, 24.0),
-        "controller.htc_set_point_degc": trial.suggest_float("controller.htc_set_point_degc", 30.0, 90.0),
-        "controller.battery.heat_up_to_degc": trial.suggest_float(
-            "controller.battery.heat_up_to_degc", -20.0, 20.0
-        ),
-        "controller.ptc_from_deviation_k": trial.suggest_float(
-            "controller.ptc_from_deviation_k", -20.0, 30.0
-        ),
-    }
+def suggest(trial: optuna.Trial, *, cooled: bool) -> dict[str, Value]:
+    """Draws choices; the ranges hold those of today's rules and what a heat pump engineer would try."""
+    modes: dict[str, Value] = {"strategy.battery": trial.suggest_categorical("strategy.battery", TREATMENTS)}
+    for source in ("ptc", "ambient", "motor", "transmission"):
+        key = f"strategy.{source}"
+        modes[key] = trial.suggest_categorical(key, (True, False))
+    ranges = {**RANGES, **(COOLING_RANGES if cooled else {})}
+    return {**modes, **{key: trial.suggest_float(key, low, high) for key, (low, high) in ranges.items()}}

@@ -10,7 +10,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 fn setup() -> (Arc<Setup>, Source) {
-    let origin = Origin { distribution: Some("train-v1".to_owned()), ..Origin::default() };
+    let origin = Origin { distribution: Some("train-v2".to_owned()), ..Origin::default() };
     let (setup, mut sources) = Setup::new(&Settings::default(), &[origin]).expect("built in");
     (setup, sources.remove(0))
 }

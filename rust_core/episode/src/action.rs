@@ -17,8 +17,9 @@ pub const LEVELS: usize = 11;
 /// Normalised compressor demand of the lowest level that runs.
 const LOWEST_RUNNING: f64 = -0.9;
 
-/// Sets of actuators by name: those that agents control by default, those that rule-based controllers move, all.
-pub const GROUPS: [&str; 3] = ["default", "hpcu", "all"];
+/// Sets of actuators by name: those that agents control by default, those of them that move heat and not air, those that
+/// rule-based controllers move, all.
+pub const GROUPS: [&str; 4] = ["default", "heat", "hpcu", "all"];
 
 /// Number of options of a row.
 #[must_use]
@@ -103,7 +104,8 @@ impl ActionTable {
             let of_group: Option<fn(&ActionRow) -> bool> = match GROUPS.iter().position(|group| group == name)
             {
                 Some(0) => Some(|row| row.by_default),
-                Some(1) => Some(|row| row.by_rules),
+                Some(1) => Some(|row| row.moves_heat),
+                Some(2) => Some(|row| row.by_rules),
                 Some(_) => Some(|_| true),
                 None => None,
             };
@@ -594,23 +596,27 @@ mod tests {
     }
 
     #[test]
-    fn default_actions_of_the_paper_are_six_connections_the_ptc_and_the_compressor() {
-        let table = table(&["default"], &rows_of(&["jeffs2019"])).expect("built in");
-        let names: Vec<&str> = table.rows().iter().map(|row| row.name.as_str()).collect();
-        assert_eq!(
-            names,
-            [
-                "battery",
-                "motor",
-                "transmission",
-                "ambient",
-                "thermal_battery",
-                "cabin",
-                "ptc",
-                "compressor_power"
-            ]
-        );
-        assert_eq!(table.option_counts(), [3, 2, 2, 3, 3, 3, 2, 11]);
+    fn default_actions_of_the_paper_are_six_connections_ptc_compressor_and_the_cabin_s_air() {
+        let set = rows_of(&["jeffs2019"]);
+        let heat = [
+            "battery",
+            "motor",
+            "transmission",
+            "ambient",
+            "thermal_battery",
+            "cabin",
+            "ptc",
+            "compressor_power",
+        ];
+        let air = ["recirculation", "blower_level", "windscreen_share"];
+        let names = |group: &str| {
+            let table = table(&[group], &set).expect("built in");
+            table.rows().iter().map(|row| row.name.clone()).collect::<Vec<_>>()
+        };
+        assert_eq!(names("heat"), heat);
+        assert_eq!(names("default"), [heat.as_slice(), &air].concat());
+        let table = table(&["default"], &set).expect("built in");
+        assert_eq!(table.option_counts(), [3, 2, 2, 3, 3, 3, 2, 11, 11, 11, 11]);
     }
 
     #[test]
@@ -700,7 +706,7 @@ mod tests {
                     Experiment::with_vehicle(scenario, Some(vehicle), None, &[]).expect("built in");
                 let layout = experiment.plant.layout();
                 let set = RowSet::of([layout, &shared]).expect("the same by the same name");
-                let table = table(&["default"], &set).expect("built in");
+                let table = table(&["heat"], &set).expect("built in");
                 let actions = FittedActions::of(&table, layout);
                 with_checks += usize::from(actions.checks.is_some());
                 let defaults = Defaults::of(&experiment);

@@ -245,11 +245,11 @@ mod tests {
     use crate::rows::RowSet;
     use std::collections::BTreeMap;
 
-    /// The command for options by name of the default actions; the first of those that are not named.
+    /// The command for options by name of the actions that move heat; the first of those that are not named.
     fn completed(experiment: &Experiment, asked: &[(&str, usize)]) -> Command {
         let layout = experiment.plant.layout();
         let set = RowSet::of([layout]).expect("one vehicle");
-        let table = ActionTable::new(&["default".to_owned()], &set, &BTreeMap::new()).expect("built in");
+        let table = ActionTable::new(&["heat".to_owned()], &set, &BTreeMap::new()).expect("built in");
         let option = |name: &str| asked.iter().find(|(row, _)| *row == name).map_or(0, |&(_, option)| option);
         let rows = table.rows().iter().enumerate();
         let values: Vec<f32> = rows.map(|(column, row)| table.value(column, option(&row.name))).collect();

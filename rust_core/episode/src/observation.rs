@@ -559,7 +559,7 @@ mod tests {
         let (_, table) = tables(&["jeffs2019"], &[DEFAULT_GROUP]);
         let ahead = |row: &Observed| matches!(row.source, Source::SpeedAhead(_) | Source::TimeLeft);
         assert!(!table.rows().iter().any(ahead));
-        assert_eq!(table.rows().len(), 56);
+        assert_eq!(table.rows().len(), 63);
     }
 
     #[test]

@@ -21,6 +21,8 @@ pub struct ActionRow {
     pub description: String,
     /// Agents control it unless they say otherwise.
     pub by_default: bool,
+    /// It moves heat, not air.
+    pub moves_heat: bool,
     /// Rule-based controllers move it.
     pub by_rules: bool,
 }
@@ -100,6 +102,7 @@ impl RowSet {
                     scale: actuator.scale.clone(),
                     description: actuator.description.clone(),
                     by_default: actuator.by_default(),
+                    moves_heat: actuator.moves_heat(),
                     by_rules: actuator.by_default() || ruled(layout, actuator.purpose),
                 });
                 continue;
@@ -143,16 +146,8 @@ impl RowSet {
 /// Whether rule-based controllers move a row that is no choice: recirculation, and requests of battery, front-end
 /// exchangers and cabins.
 fn ruled(layout: &Layout, purpose: Purpose) -> bool {
-    match purpose {
-        Purpose::Recirculation(_) => true,
-        Purpose::Request(member) => {
-            matches!(
-                layout.members[member].kind,
-                MemberKind::Battery | MemberKind::FrontEnd | MemberKind::Cabin
-            )
-        }
-        _ => false,
-    }
+    let Purpose::Request(member) = purpose else { return false };
+    matches!(layout.members[member].kind, MemberKind::Battery | MemberKind::FrontEnd | MemberKind::Cabin)
 }
 
 #[cfg(test)]

@@ -391,11 +391,13 @@ impl SignalTable {
             function("ambient_humidity_ratio", "kg/kg", "water in a kilogram of dry ambient air", |v| {
                 v.disturbance.ambient_humidity_ratio
             })
-            .within(0.0, 0.04),
+            .within(0.0, 0.04)
+            .seen(rank::CABIN_AIR),
             function("cabin_humidity_ratio", "kg/kg", "water in a kilogram of dry cabin air", |v| {
                 v.state.cabin_air[0].humidity_ratio
             })
-            .within(0.0, 0.04),
+            .within(0.0, 0.04)
+            .seen(rank::CABIN_AIR),
             function(
                 "cabin_relative_humidity",
                 "-",
@@ -406,7 +408,8 @@ impl SignalTable {
             function("cabin_co2_ppm", "ppm", "carbon dioxide in the cabin air", |v| {
                 v.state.cabin_air[0].co2 * 1e6
             })
-            .within(400.0, 3000.0),
+            .within(400.0, 5000.0)
+            .seen(rank::CABIN_AIR),
             function("windscreen_temperature_degc", "degC", "inner surface of the windscreen", |v| {
                 v.state.cabin_air[0].windscreen_k - ZERO_CELSIUS_K
             }),
@@ -416,7 +419,8 @@ impl SignalTable {
                 "inner surface of the windscreen less dew point of the cabin air; fog below 0",
                 |v| v.state.cabin_air[0].fog_margin_k(),
             )
-            .within(-20.0, 20.0),
+            .within(-40.0, 60.0)
+            .seen(rank::CABIN_AIR),
             function("windscreen_water_kg", "kg", "water on the inner surface of the windscreen", |v| {
                 v.state.cabin_air[0].film_kg
             })

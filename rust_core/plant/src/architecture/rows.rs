@@ -69,13 +69,21 @@ impl ActuatorRow {
         Self { name: name.into(), unit, scale: Scale::Linear, description, purpose }
     }
 
-    /// Whether agents control it unless they say otherwise: connections, heaters, valves of exchangers, compressor.
+    /// Whether it moves heat: connections, heaters, valves of exchangers, compressor.
     #[must_use]
-    pub fn by_default(&self) -> bool {
+    pub fn moves_heat(&self) -> bool {
         matches!(
             self.purpose,
             Purpose::Connection(_) | Purpose::Heater(_) | Purpose::ExchangerValve(_) | Purpose::Compressor
         )
+    }
+
+    /// Whether agents control it unless they say otherwise: what moves heat, and the air of cabins.
+    #[must_use]
+    pub fn by_default(&self) -> bool {
+        let air =
+            matches!(self.purpose, Purpose::Recirculation(_) | Purpose::Blower(_) | Purpose::Windscreen(_));
+        self.moves_heat() || air
     }
 
     /// Options of a choice; none for a level.
