@@ -45,26 +45,23 @@ class Objective:
         self._trips = trips
         self._seed = seed
         self._kept = kept
-        papers = self._drive(rule_choices.PAPER)
-        papers_k = papers[1]
-        if kept is not None and kept.get(band.title, rule_choices.PAPER) not in {None, papers}:
-            # The plant is another one since: nothing that was driven before counts.
-            kept.forget()
-        self._note(rule_choices.PAPER, papers)
+        _, papers_k = self._outcome(rule_choices.PAPER)
         self._allowed_k = papers_k - min(MARGIN_K, MARGIN_SHARE * papers_k)
 
     def score(self, choices: rule_choices.Choices) -> float:
         """Returns points a trip; more is better. Discomfort beyond what is allowed costs `PENALTY_PER_K`."""
-        outcome = None if self._kept is None else self._kept.get(self.band.title, choices)
-        if outcome is None:
-            outcome = self._drive(choices)
-            self._note(choices, outcome)
-        score, discomfort_k = outcome
+        score, discomfort_k = self._outcome(choices)
         return score - PENALTY_PER_K * max(discomfort_k - self._allowed_k, 0.0)
 
-    def _note(self, choices: rule_choices.Choices, outcome: Outcome) -> None:
-        if self._kept is not None and self._kept.get(self.band.title, choices) is None:
-            self._kept.add(self.band.title, choices, outcome)
+    def _outcome(self, choices: rule_choices.Choices) -> Outcome:
+        """What was driven before, or is driven now."""
+        if self._kept is None:
+            return self._drive(choices)
+        outcome = self._kept.get(self.band, choices)
+        if outcome is None:
+            outcome = self._drive(choices)
+            self._kept.add(self.band, choices, outcome)
+        return outcome
 
     def _drive(self, choices: rule_choices.Choices) -> Outcome:
         """Mean score of a trip, and mean discomfort over time [K]."""

@@ -8,6 +8,7 @@ import tomlkit
 
 from hp_gym.files import atomic_write
 from hp_gym.overrides import Value
+from hp_gym.studies.axes import Axis, Between
 from hp_gym.studies.tuning.ambient_bands import Band
 
 Choices = Mapping[str, Value]
@@ -25,6 +26,26 @@ PAPER: Final[Choices] = {
     "controller.ptc_from_deviation_k": -20.0,
 }
 """What Jeffs et al. 2019 choose: all sources, battery heated, PTC whenever it may (sections 2.2 to 2.4)."""
+
+
+def _axis(key: str, values: tuple[Value, ...] | Between) -> Axis:
+    # Named by its whole key: the sampler takes axes by name, so that other names would be another search.
+    return Axis(key, (key,), values)
+
+
+BATTERY: Final = _axis("strategy.battery", ("heat", "isolate", "source"))
+SWITCHES: Final = tuple(
+    _axis(f"strategy.{part}", (True, False)) for part in ("ptc", "ambient", "motor", "transmission")
+)
+AXES: Final = (
+    BATTERY,
+    *SWITCHES,
+    _axis("controller.cabin_set_point_degc", Between(17.0, 24.0)),
+    _axis("controller.htc_set_point_degc", Between(30.0, 90.0)),
+    _axis("controller.battery.heat_up_to_degc", Between(-20.0, 20.0)),
+    _axis("controller.ptc_from_deviation_k", Between(-20.0, 30.0)),
+)
+"""What is searched; the ranges hold the paper's choices and what a heat pump engineer would try."""
 
 
 def to_toml(description: str, bands: Sequence[tuple[Band, Choices]]) -> str:

@@ -1,16 +1,13 @@
-"""The two searches: every combination of modes, and Optuna over modes, set points and thresholds."""
+"""The two searches: every combination of modes; and modes, set points and thresholds, as `optimise` does."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-import optuna
-
-from hp_gym.overrides import Value
+from hp_gym.studies.axes import Axis
+from hp_gym.studies.optimise import search_loop
 from hp_gym.studies.tuning.objective import Objective
-from hp_gym.studies.tuning.rule_choices import PAPER, Choices
-
-TREATMENTS = ("heat", "isolate", "source")
+from hp_gym.studies.tuning.rule_choices import AXES, BATTERY, PAPER, SWITCHES, Choices
 
 Advance = Callable[[], None]
 """Called after each trial."""
@@ -35,21 +32,12 @@ class Result:
 
 def modes() -> list[Choices]:
     """Every combination of battery treatment, PTC, ambient and drive train as sources; the paper's first."""
-    combinations: list[Choices] = []
-    for battery, ptc, ambient, drive_train in product(
-        TREATMENTS, (True, False), (True, False), (True, False)
-    ):
-        combinations.append(
-            {
-                **PAPER,
-                "strategy.battery": battery,
-                "strategy.ptc": ptc,
-                "strategy.ambient": ambient,
-                "strategy.motor": drive_train,
-                "strategy.transmission": drive_train,
-            }
-        )
-    return combinations
+    ptc, ambient, motor, transmission = SWITCHES
+    drive_train = Axis("drive_train", (*motor.keys, *transmission.keys), motor.values)
+    axes = (BATTERY, ptc, ambient, drive_train)
+    places = product(*(range(len(axis.probes())) for axis in axes))
+    names = [axis.name for axis in axes]
+    return [{**PAPER, **search_loop.changes(axes, dict(zip(names, place, strict=True)))} for place in places]
 
 
 def best_mode(objective: Objective, advance: Advance) -> Result:
@@ -63,7 +51,7 @@ def best_mode(objective: Objective, advance: Advance) -> Result:
 
 
 def tuned(objective: Objective, start: Choices, trials: int, seed: int, advance: Advance) -> Result:
-    """Searches modes, set points and thresholds with Optuna's multivariate TPE.
+    """Searches modes, set points and thresholds with Optuna's multivariate TPE, one trial after the other.
 
     Args:
         objective: What to make large.
@@ -72,41 +60,17 @@ def tuned(objective: Objective, start: Choices, trials: int, seed: int, advance:
         seed: Seed of the sampler.
         advance: Called after each trial.
     """
-    # Its warnings are tracebacks of trials that Ctrl-C ended.
-    optuna.logging.set_verbosity(optuna.logging.ERROR)
-    sampler = optuna.samplers.TPESampler(seed=seed, multivariate=True, n_startup_trials=max(10, trials // 8))
-    study = optuna.create_study(direction="maximize", sampler=sampler)
-    for known in (PAPER, start):
-        study.enqueue_trial(dict(known))
 
-    def evaluate(trial: optuna.Trial) -> float:
-        choices = suggest(trial)
-        score = objective.score(choices)
+    def drive(batch: Sequence[Choices]) -> list[search_loop.Outcome]:
+        outcomes = [search_loop.Outcome([objective.score(choices)]) for choices in batch]
         advance()
-        return score
+        return outcomes
 
-    study.optimize(evaluate, n_trials=trials)
-    paper_score = study.trials[0].value
-    if paper_score is None:
-        message = "the paper's choices could not be driven"
-        raise RuntimeError(message)
-    return Result(dict(study.best_params), study.best_value, paper_score, len(study.trials))
-
-
-def suggest(trial: optuna.Trial) -> dict[str, Value]:
-    """Draws choices; the ranges hold the paper's and what a heat pump engineer would try."""
-    return {
-        "strategy.battery": trial.suggest_categorical("strategy.battery", TREATMENTS),
-        "strategy.ptc": trial.suggest_categorical("strategy.ptc", (True, False)),
-        "strategy.ambient": trial.suggest_categorical("strategy.ambient", (True, False)),
-        "strategy.motor": trial.suggest_categorical("strategy.motor", (True, False)),
-        "strategy.transmission": trial.suggest_categorical("strategy.transmission", (True, False)),
-        "controller.cabin_set_point_degc": trial.suggest_float("controller.cabin_set_point_degc", 17.0, 24.0),
-        "controller.htc_set_point_degc": trial.suggest_float("controller.htc_set_point_degc", 30.0, 90.0),
-        "controller.battery.heat_up_to_degc": trial.suggest_float(
-            "controller.battery.heat_up_to_degc", -20.0, 20.0
-        ),
-        "controller.ptc_from_deviation_k": trial.suggest_float(
-            "controller.ptc_from_deviation_k", -20.0, 30.0
-        ),
-    }
+    study = search_loop.of_one_process(search_loop.tpe(seed, max(10, trials // 8)), "maximize")
+    for known in (PAPER, start):
+        study.enqueue_trial(search_loop.as_drawn(AXES, known) or {})
+    search_loop.search(study, AXES, drive, trials)
+    best = study.best_trial
+    return Result(
+        search_loop.changes(AXES, best.params), study.best_value, study.trials[0].values[0], len(study.trials)
+    )
