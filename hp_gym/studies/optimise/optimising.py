@@ -124,7 +124,7 @@ class Task:
         told: dict[str, Any] = trial_store.constraints_argument()
         if len(self.goals) > 1:
             return optuna.samplers.NSGAIISampler(population_size=32, seed=seed, **told)
-        return search_loop.tpe(seed, 24, **told)
+        return optuna.samplers.TPESampler(seed=seed, multivariate=True, n_startup_trials=24, **told)
 
     @property
     def kpis(self) -> list[str]:

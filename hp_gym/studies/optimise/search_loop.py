@@ -2,14 +2,14 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from typing import Any, TypeAlias
 
 import optuna
 from optuna.distributions import BaseDistribution, CategoricalDistribution, FloatDistribution
 from optuna.trial import TrialState
 
 from hp_gym.overrides import Value
-from hp_gym.studies.axes import Axis, Between
+from hp_gym.studies.axes import Axis, Between, is_number
 from hp_gym.studies.optimise import trial_store
 
 Changes: TypeAlias = dict[str, Value]
@@ -35,18 +35,12 @@ Drive: TypeAlias = Callable[[Sequence[Changes]], Sequence[Outcome]]
 """Drives what was drawn; an outcome each."""
 
 
-def tpe(seed: int, startup: int, **told: Any) -> optuna.samplers.TPESampler:
-    """Returns the sampler of searches for one goal, whose first trials are drawn at random."""
-    return optuna.samplers.TPESampler(seed=seed, multivariate=True, n_startup_trials=startup, **told)
-
-
-def of_one_process(
-    sampler: optuna.samplers.BaseSampler, direction: Literal["minimize", "maximize"]
-) -> optuna.Study:
-    """Returns a search in memory, for one goal."""
+def of_one_process(seed: int, startup: int) -> optuna.Study:
+    """Returns a search in memory for one goal that is made large, whose first trials are drawn at random."""
     # Its warnings are tracebacks of trials that Ctrl-C ended.
     optuna.logging.set_verbosity(optuna.logging.ERROR)
-    return optuna.create_study(sampler=sampler, direction=direction)
+    sampler = optuna.samplers.TPESampler(seed=seed, multivariate=True, n_startup_trials=startup)
+    return optuna.create_study(sampler=sampler, direction="maximize")
 
 
 def search(
@@ -66,13 +60,10 @@ def search(
         drive: Who drives.
         trials: Trials, those that it has included.
         batch: Trials that are drawn and driven at a time.
-        seen: Told of the trials that there are, before each batch.
+        seen: Told of the trials that there are, after each batch.
     """
-    while True:
-        done = len(study.get_trials(deepcopy=False, states=(TrialState.COMPLETE, TrialState.FAIL)))
-        seen(done)
-        if done >= trials:
-            return
+    ended = (TrialState.COMPLETE, TrialState.FAIL)
+    while (done := len(study.get_trials(deepcopy=False, states=ended))) < trials:
         asked = [study.ask(distributions(axes)) for _ in range(min(batch, trials - done))]
         outcomes = drive([changes(axes, trial.params) for trial in asked])
         for trial, outcome in zip(asked, outcomes, strict=True):
@@ -83,6 +74,7 @@ def search(
                 continue
             trial_store.note_excesses(trial, list(outcome.beyond))
             study.tell(trial, outcome.values)
+        seen(done + len(asked))
 
 
 def distributions(axes: Sequence[Axis]) -> dict[str, BaseDistribution]:
@@ -100,13 +92,12 @@ def as_drawn(axes: Sequence[Axis], values: Mapping[str, Any]) -> dict[str, float
     drawn: dict[str, float | int] = {}
     for axis in axes:
         value = values.get(axis.keys[0])
-        if isinstance(axis.values, Between):
-            number = isinstance(value, int | float) and not isinstance(value, bool)
-            if not number or not axis.values.low <= float(value) <= axis.values.high:  # type: ignore[arg-type]
+        if not isinstance(axis.values, Between):
+            if value not in axis.values:
                 return None
-            drawn[axis.name] = float(value)  # type: ignore[arg-type]
-        elif value in axis.values:
             drawn[axis.name] = axis.values.index(value)
+        elif is_number(value) and axis.values.low <= value <= axis.values.high:
+            drawn[axis.name] = float(value)
         else:
             return None
     return drawn

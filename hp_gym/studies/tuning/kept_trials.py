@@ -42,10 +42,8 @@ class KeptTrials:
         except trial_store.OptimiseError:
             self.remove()
             self._study, _ = trial_store.join(self._path, definition, _DIRECTIONS)
-        self._outcomes: dict[str, Outcome] = {}
-        for trial in self._study.get_trials(deepcopy=False, states=(TrialState.COMPLETE,)):
-            score, discomfort_k = trial.values
-            self._outcomes[repr(trial.params)] = (score, discomfort_k)
+        trials = self._study.get_trials(deepcopy=False, states=(TrialState.COMPLETE,))
+        self._outcomes = {repr(trial.params): (trial.values[0], trial.values[1]) for trial in trials}
 
     def __len__(self) -> int:
         """Number of trials."""

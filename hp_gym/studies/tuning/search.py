@@ -1,6 +1,6 @@
 """The two searches: every combination of modes; and modes, set points and thresholds, as `optimise` does."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
 
@@ -35,9 +35,11 @@ def modes() -> list[Choices]:
     ptc, ambient, motor, transmission = SWITCHES
     drive_train = Axis("drive_train", (*motor.keys, *transmission.keys), motor.values)
     axes = (BATTERY, ptc, ambient, drive_train)
-    places = product(*(range(len(axis.probes())) for axis in axes))
-    names = [axis.name for axis in axes]
-    return [{**PAPER, **search_loop.changes(axes, dict(zip(names, place, strict=True)))} for place in places]
+    combinations = product(*(axis.probes() for axis in axes))
+    return [
+        {**PAPER, **{key: value for axis, value in zip(axes, values, strict=True) for key in axis.keys}}
+        for values in combinations
+    ]
 
 
 def best_mode(objective: Objective, advance: Advance) -> Result:
@@ -60,17 +62,15 @@ def tuned(objective: Objective, start: Choices, trials: int, seed: int, advance:
         seed: Seed of the sampler.
         advance: Called after each trial.
     """
-
-    def drive(batch: Sequence[Choices]) -> list[search_loop.Outcome]:
-        outcomes = [search_loop.Outcome([objective.score(choices)]) for choices in batch]
-        advance()
-        return outcomes
-
-    study = search_loop.of_one_process(search_loop.tpe(seed, max(10, trials // 8)), "maximize")
+    study = search_loop.of_one_process(seed, max(10, trials // 8))
     for known in (PAPER, start):
         study.enqueue_trial(search_loop.as_drawn(AXES, known) or {})
-    search_loop.search(study, AXES, drive, trials)
-    best = study.best_trial
-    return Result(
-        search_loop.changes(AXES, best.params), study.best_value, study.trials[0].values[0], len(study.trials)
+    search_loop.search(
+        study,
+        AXES,
+        lambda batch: [search_loop.Outcome([objective.score(choices)]) for choices in batch],
+        trials,
+        seen=lambda _: advance(),
     )
+    choices = search_loop.changes(AXES, study.best_params)
+    return Result(choices, study.best_value, study.trials[0].values[0], len(study.trials))
