@@ -1,6 +1,7 @@
 """Trials of a search that was stopped: the same command goes on with them."""
 
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final, TypeAlias
 
@@ -28,15 +29,16 @@ class KeptTrials:
     Args:
         folder: Folder of the results.
         command: What was asked for; trials of another command or build, and damaged ones, are forgotten.
+        overrides: What differs in the car; part of what was asked for.
 
     Raises:
         OSError: The folder cannot be written to.
     """
 
-    def __init__(self, folder: Path, command: str) -> None:
+    def __init__(self, folder: Path, command: str, overrides: Sequence[str] = ()) -> None:
         place = folder.resolve()
         self._path = place.with_name(f".{place.name}.{OURS}trials")
-        definition = {"command": command, "build": build()}
+        definition = {"command": command, "overrides": list(overrides), "build": build()}
         try:
             self._study, _ = trial_store.join(self._path, definition, _DIRECTIONS)
         except trial_store.OptimiseError:
