@@ -106,7 +106,7 @@ SHOWN = {
 }
 
 LONG = ("10_optimise", "11_calibrate", "16_train")
-"""Run with `--long-examples` only: ten seconds each."""
+"""Run with `--long-examples` only: ten to thirty seconds each."""
 
 PAGES = (
     *("12_first_run", "01_a_car_of_your_own", "15_own_trip", "09_sweep", "10_optimise", "11_calibrate"),
@@ -159,7 +159,7 @@ def test_a_page_shows_what_its_example_prints(name: str) -> None:
 @pytest.mark.parametrize("name", SHOWN)
 def test_an_example_runs(name: str, pytestconfig: pytest.Config) -> None:
     if name in LONG and not pytestconfig.getoption("--long-examples"):
-        pytest.skip("takes ten seconds: pytest tests/test_examples.py --long-examples")
+        pytest.skip("takes ten seconds or more: pytest tests/test_examples.py --long-examples")
     text = shown_by(name)
     for pattern in SHOWN[name]:
         assert re.search(f"^{pattern}", text, re.MULTILINE), (pattern, text)
