@@ -322,7 +322,7 @@ def random_interrupts(
         for attempt in range(number):
             shutil.rmtree(place / "train", ignore_errors=True)
             # A search would go on with what it has, and end too soon.
-            (place / f".tune.{OURS}trials.jsonl").unlink(missing_ok=True)
+            shutil.rmtree(place / f".tune.{OURS}trials", ignore_errors=True)
             process = begin(words)
             # Until the first lines of the package are run Ctrl-C is Python's.
             time.sleep(chance.uniform(0.1, duration_s))

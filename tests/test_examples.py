@@ -86,10 +86,33 @@ SHOWN = {
         r"plan: (rules|without)",
         r"paid by the rules -\d+\.\d\d, by the plan -\d+\.\d\d",
     ],
+    "15_own_trip": [
+        r"13\.8 km in 900 s, arrived",
+        r"fastest 110 km/h",
+        *(rf"{name}: \d\.\d\d kWh, \d+\.\d K off target" for name in ("preheated", "cold")),
+        *(rf"at {degc} degC \d\.\d\d kWh" for degc in ("-15", "-8", "0", "8")),
+        r"environment: 15_own_trip\.csv",
+    ],
+    "16_train": [
+        r"32768 decisions, best score on validation trips -\d+\.\d",
+        *(rf"{name}: \d\.\d\d kWh, \d+\.\d K off target, -\d+\.\d points" for name in ("policy", "rules")),
+    ],
+    "17_benchmark": [
+        r"\d+ trips, 48 of them",
+        *(rf"{name}: \d\.\d\d kWh, \d+\.\d K off target" for name in ("EarlyOff", "hpcu", "hpcu-tuned")),
+        r"EarlyOff_vs_hpcu: (-?\+?\d+\.\d % energy \([+-]\d|less|more)",
+        r"report: \d{6,} bytes",
+    ],
 }
 
-LONG = ("10_optimise", "11_calibrate")
-"""Run with `--long-examples` only: ten seconds each."""
+LONG = ("10_optimise", "11_calibrate", "16_train")
+"""Run with `--long-examples` only: ten to thirty seconds each."""
+
+PAGES = (
+    *("12_first_run", "01_a_car_of_your_own", "15_own_trip", "09_sweep", "10_optimise", "11_calibrate"),
+    *("04_controllers", "16_train", "13_own_planner", "17_benchmark"),
+)
+"""Have a page, in the order in which one reads them."""
 
 ROWS_SHOWN = [
     r"arrived converter_temperature_degc converter_connection converter_chiller_heat_flow_w",
@@ -119,10 +142,24 @@ def test_each_example_has_what_it_shows() -> None:
         assert f"examples/{name}.py" in contributing
 
 
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_shows_what_its_example_prints(name: str) -> None:
+    page = (EXAMPLES / "pages" / f"{name}.md").read_text(encoding="utf-8")
+    assert f"python examples/{name}.py" in page
+    for pattern in SHOWN[name]:
+        assert re.search(f"^{pattern}", page, re.MULTILINE), pattern
+    place = PAGES.index(name)
+    # From the first to the last there is a way forward.
+    assert place == len(PAGES) - 1 or f"({PAGES[place + 1]}.md)" in page
+    assert f"(pages/{name}.md)" in (EXAMPLES / "README.md").read_text(encoding="utf-8")
+    for target in re.findall(r"\]\(([^)#]+)\)", page):
+        assert (EXAMPLES / "pages" / target).exists(), target
+
+
 @pytest.mark.parametrize("name", SHOWN)
 def test_an_example_runs(name: str, pytestconfig: pytest.Config) -> None:
     if name in LONG and not pytestconfig.getoption("--long-examples"):
-        pytest.skip("takes ten seconds: pytest tests/test_examples.py --long-examples")
+        pytest.skip("takes ten seconds or more: pytest tests/test_examples.py --long-examples")
     text = shown_by(name)
     for pattern in SHOWN[name]:
         assert re.search(f"^{pattern}", text, re.MULTILINE), (pattern, text)

@@ -66,6 +66,7 @@ class Request:
         author: For the metadata, like the following.
         license: Of the data.
         code_link: Where the code is that made them.
+        overrides: Changes for all trips, `key=value`.
     """
 
     controller: str
@@ -80,6 +81,7 @@ class Request:
     author: str = AUTHOR
     license: str = LICENSE
     code_link: str = field(default_factory=package)
+    overrides: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -142,7 +144,8 @@ def record(request: Request, progress: Callable[[int], None] = lambda _: None) -
 
 
 def _controllers(request: Request, seed: int) -> list[Controller]:
-    return resolve(request.controller, seed=seed, seeds=request.seeds, allow_code=request.allow_code)
+    found = resolve(request.controller, seed=seed, seeds=request.seeds, allow_code=request.allow_code)
+    return [controller.with_overrides(request.overrides) for controller in found]
 
 
 def _arguments(controller: Controller, request: Request) -> dict[str, Any]:
@@ -219,4 +222,5 @@ def _metadata(request: Request, drivers: list[Controller]) -> dict[str, Any]:
         "controller_seeds": sorted({one.seed for one in drivers}),
         "distribution": request.distribution,
         "seed": request.seed,
+        "overrides": list(request.overrides),
     }

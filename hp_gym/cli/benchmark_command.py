@@ -36,6 +36,9 @@ def benchmark(
             "EVHeatPump-v0 or EVHeatPumpContinuous-v0 with its defaults; `hp-gym export` converts others.",
         ),
     ] = False,
+    overrides: Annotated[
+        Path | None, typer.Option(help="A .toml file of changes to the car, as `calibrate` writes.")
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
 ) -> None:
     """Drives controllers over held-out trips and reports how much a learned one gains over rules."""
@@ -45,7 +48,7 @@ def benchmark(
     warn_of_code([name for name in controllers or [] if allow_code and name.endswith(".zip")])
     try:
         done = request.carry_out(
-            request.Request(controllers, grid, training_seeds(seeds), seed, out, allow_code),
+            request.Request(controllers, grid, training_seeds(seeds), seed, out, allow_code, overrides),
             console=progress_console,
         )
     except (ValueError, OSError) as error:

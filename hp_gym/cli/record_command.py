@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from hp_gym.cli import many_runs
 from hp_gym.cli.output import console, fail, print_json
 from hp_gym.terminal import progress_console
 
@@ -37,6 +38,7 @@ def record(
             help="What infos hold beside the parts of the reward: cost (default), action_mask, terms."
         ),
     ] = None,
+    overrides: many_runs.Overrides = None,
     author: Annotated[str, typer.Option(help="For the metadata.")] = "hp_gym contributors",
     license_: Annotated[str, typer.Option("--license", help="Of the data, for the metadata.")] = "MIT",
     code_link: Annotated[
@@ -59,6 +61,7 @@ def record(
 
     from hp_gym.agents import recording
     from hp_gym.cli.benchmark_command import training_seeds, warn_of_code
+    from hp_gym.overrides import assignments
 
     warn_of_code([controller] if allow_code and controller.endswith(".zip") else [])
     try:
@@ -75,6 +78,7 @@ def record(
             author,
             license_,
             code_link or recording.package(),
+            tuple(assignments(overrides)),
         )
         with Progress(
             console=progress_console, transient=True, disable=not progress_console.is_terminal

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from hp_gym.cli import many_runs
 from hp_gym.cli.output import console, fail, print_json
 
 
@@ -16,15 +17,16 @@ def reproduce(
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Change a value in all scenarios; may be repeated."),
     ] = None,
+    overrides: many_runs.Overrides = None,
     json: Annotated[bool, typer.Option("--json", help="Print the figures as JSON.")] = False,
 ) -> None:
     """Sets the nine scenarios of Jeffs et al. 2019 beside the model and judges the text's claims."""
-    from hp_gym import ConfigurationError
+    from hp_gym.overrides import assignments
     from hp_gym.studies.reproduction import figures, reproduction_report
 
     try:
-        reproduction = reproduction_report.reproduce(substeps, changes or ())
-    except ConfigurationError as error:
+        reproduction = reproduction_report.reproduce(substeps, [*assignments(overrides), *(changes or [])])
+    except (ValueError, OSError) as error:
         fail(str(error))
     try:
         paths = figures.write_all(reproduction_report.labelled(reproduction), out)

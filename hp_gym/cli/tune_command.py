@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hp_gym.cli import many_runs
 from hp_gym.cli.output import console, fail, print_json
 
 if TYPE_CHECKING:
@@ -18,14 +19,17 @@ def tune(
     trials: Annotated[int, typer.Option(min=10, help="Trials of the search in each ambient band.")] = 160,
     trips: Annotated[int, typer.Option(min=1, help="Training trips in each ambient band.")] = 128,
     seed: Annotated[int, typer.Option(min=0, help="Seed of trips and search.")] = 0,
+    overrides: many_runs.Overrides = None,
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
     """Chooses modes, and modes with set points, for each ambient band on training trips."""
+    from hp_gym.overrides import assignments
     from hp_gym.studies.tuning import tuned_rules
 
     how = f"hp-gym tune --trials {trials} --trips {trips} --seed {seed}"
+    how += f" --overrides {overrides}" if overrides else ""
     try:
-        best, tuned = tuned_rules.tune(out, trials, trips, seed, how)
+        best, tuned = tuned_rules.tune(out, trials, trips, seed, how, overrides=assignments(overrides))
     except (ValueError, OSError) as error:
         fail(error)
     if json:

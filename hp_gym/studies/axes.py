@@ -3,7 +3,7 @@
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, TypeGuard
 
 import numpy as np
 
@@ -80,7 +80,7 @@ class Axis:
     @property
     def numeric(self) -> bool:
         """Whether all values are numbers."""
-        return isinstance(self.values, Between) or all(_is_number(value) for value in self.values)
+        return isinstance(self.values, Between) or all(is_number(value) for value in self.values)
 
     def label(self, value: Value) -> float | str:
         """The value as it stands in a table: a number, or text."""
@@ -113,7 +113,8 @@ class Axis:
         return dict.fromkeys(self.keys, value)
 
 
-def _is_number(value: object) -> bool:
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether a value of a file is a number; truth is none."""
     return isinstance(value, int | float | np.number) and not isinstance(value, bool)
 
 

@@ -3,16 +3,18 @@
 import json
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
 import tomlkit
+from numpy.typing import NDArray
 from typer.testing import CliRunner
 
 import hp_gym
 from hp_gym.cli.app import app
 from hp_gym.studies.calibration.fit import Options
+from hp_gym.studies.calibration.identifiability import _differences
 from hp_gym.studies.calibration.problem import CalibrationError, load
 
 CASE = "jeffs2019/case1-4"
@@ -182,3 +184,13 @@ def test_a_trace_that_does_not_fit_is_refused(text: str, message: str, tmp_path:
     result = CliRunner().invoke(app, ["calibrate", "--config", str(path), "--out", str(earlier)])
     assert result.exit_code == 2
     assert len(result.stderr.splitlines()) == 1
+
+
+def test_a_residual_that_switches_says_nothing_of_a_parameter() -> None:
+    def residuals(shares: NDArray[np.float64]) -> NDArray[np.float64]:
+        heater_on = float(shares[0] > 0.5)
+        return np.array([40.0 * shares[0], 100.0 * heater_on, -3.0 * shares[0] + 100.0 * heater_on])
+
+    jacobian, roughness = _differences(cast("Any", residuals), np.array([0.5]), 3)
+    assert jacobian[:, 0] == pytest.approx([40.0, 0.0, 0.0])
+    assert roughness[0] == pytest.approx(0.0, abs=1e-9)

@@ -13,6 +13,7 @@ from hp_gym.agents.training import configuration
 from hp_gym.studies.tuning import objective as goals
 from hp_gym.studies.tuning import rule_choices, search
 from hp_gym.studies.tuning.ambient_bands import BANDS, Band
+from hp_gym.studies.tuning.kept_trials import KeptTrials
 from hp_gym.studies.tuning.objective import objective
 
 
@@ -75,3 +76,25 @@ def test_rules_are_held_to_the_comfort_that_policies_are_held_to() -> None:
     assert constraint is not None
     assert (constraint.margin_k, constraint.margin_share) == (goals.MARGIN_K, goals.MARGIN_SHARE)
     assert configuration.load("ppo", []).environment.reward == goals.REWARD
+
+
+def test_trials_are_kept_for_the_same_command_and_car_only(tmp_path: Path) -> None:
+    out, band = tmp_path / "out", BANDS[1]
+    other = {**rule_choices.PAPER, "controller.htc_set_point_degc": 47.123456789012345}
+    kept = KeptTrials(out, "tune")
+    assert not kept
+    kept.add(band, other, (-1.0 / 3.0, 0.1))
+    again = KeptTrials(out, "tune")
+    assert again.get(band, other) == (-1.0 / 3.0, 0.1)
+    assert again.get(BANDS[2], other) is again.get(band, rule_choices.PAPER) is None
+    assert not KeptTrials(out, "tune", ["vehicle.body.mass_kg=2000.0"])
+    assert not KeptTrials(out, "tune")
+    kept = KeptTrials(out, "tune")
+    kept.add(band, other, (1.0, 2.0))
+    (file,) = tmp_path.rglob("optimise.db")
+    for path in file.parent.iterdir():
+        path.write_bytes(b"damaged")
+    kept = KeptTrials(out, "tune")
+    assert not kept
+    kept.remove()
+    assert list(tmp_path.iterdir()) == []

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from hp_gym.messages import OneLineError
+from hp_gym.overrides import assignments
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
@@ -46,3 +47,14 @@ class Controller:
     environment: Mapping[str, Any] = field(default_factory=dict)
     seed: int = NO_SEED
     learned: bool = False
+
+    def with_overrides(self, changes: Sequence[str]) -> Controller:
+        """The same in a car in which values differ; what it needs itself stays.
+
+        Args:
+            changes: `key=value`, as `hp_gym.overrides.assignments` gives them.
+        """
+        if not changes:
+            return self
+        own = assignments(self.environment.get("overrides"))
+        return replace(self, environment={**self.environment, "overrides": [*changes, *own]})

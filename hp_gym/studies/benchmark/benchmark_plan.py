@@ -39,6 +39,7 @@ class Plan:
         command: What was asked for, in words of the command line.
         seed: Seed of the resamples (that of the controller `random` is its own).
         resamples: How many.
+        overrides: What differs in the car of all trips; the controllers know it.
     """
 
     grid: Grid
@@ -46,6 +47,7 @@ class Plan:
     command: str
     seed: int = 0
     resamples: int = RESAMPLES
+    overrides: Sequence[str] = ()
 
 
 def run(
@@ -80,7 +82,7 @@ def run(
     ]
     heating = [scenario for scenario in grid.scenarios if scenario.band.headline]
     tasks: list[Task] = [(controller, grid.scenarios) for controller in plan.controllers]
-    tasks += [(setting.controller, heating) for setting in rivals]
+    tasks += [(setting.controller.with_overrides(plan.overrides), heating) for setting in rivals]
     progress = begin(sum(len(scenarios) for _, scenarios in tasks))
     # Controllers already share the cores; threads of a linear algebra library would only wait for each other,
     # and its sums would depend on their number.
@@ -113,6 +115,7 @@ def _summary(
         "grid": summary.grid_facts(plan.grid),
         "bootstrap": {"resamples": plan.resamples, "seed": plan.seed, "strata": "ambient temperature"},
         "command": plan.command,
+        "overrides": list(plan.overrides),
         "versions": environment_facts.versions(),
         "hardware": environment_facts.hardware(),
     }

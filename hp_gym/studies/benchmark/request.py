@@ -11,8 +11,9 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 import hp_gym
 from hp_gym import transactions
-from hp_gym.agents.controllers import DEFAULTS, Controller, learned, resolve
+from hp_gym.agents.controllers import DEFAULTS, Controller, ControllerError, learned, resolve
 from hp_gym.agents.controllers.rule_based import FILES
+from hp_gym.overrides import assignments
 from hp_gym.studies.benchmark import benchmark_plan, drive, grid, results_folder
 from hp_gym.studies.benchmark.report import write_report
 
@@ -36,6 +37,8 @@ class Request:
     out: Path
     allow_code: bool = False
     """Whether zip files of stable-baselines3 are loaded, which can run code."""
+    overrides: Path | None = None
+    """File of changes to the car, in all trips."""
 
     def words(self) -> str:
         """The command, without the folder of results: that does not change them."""
@@ -48,6 +51,8 @@ class Request:
             parts.append(f"--seed {self.seed}")
         if self.allow_code:
             parts.append("--allow-code")
+        if self.overrides is not None:
+            parts.append(f"--overrides {self.overrides}")
         return " ".join(parts)
 
 
@@ -81,7 +86,9 @@ def carry_out(request: Request, console: Console) -> Done:
     """
     began_s = perf_counter()
     found = grid.load(request.grid)
-    plan = benchmark_plan.Plan(found, controllers(request, console), request.words(), request.seed)
+    changes = _changes(request)
+    drivers = [controller.with_overrides(changes) for controller in controllers(request, console)]
+    plan = benchmark_plan.Plan(found, drivers, request.words(), request.seed, overrides=changes)
     with transactions.new_contents(request.out) as folder:
         with _bar(console) as bar:
             task = bar.add_task("trips", total=None)
@@ -130,6 +137,22 @@ def controllers(request: Request, console: Console) -> list[Controller]:
         for controller in resolve(name, seed=request.seed, seeds=request.seeds, allow_code=request.allow_code)
     ]
     return chosen + (learned.ablations() if learned.REFERENCE in names else [])
+
+
+def _changes(request: Request) -> list[str]:
+    """Changes to the car, `key=value`.
+
+    Raises:
+        ControllerError: One would change the trips, which are the grid's.
+    """
+    changes = assignments(request.overrides)
+    for change in changes:
+        if change.startswith("scenario."):
+            key = change.partition("=")[0]
+            raise ControllerError(
+                f"{request.overrides}: `{key}` would change the held-out trips; only the car may differ"
+            )
+    return changes
 
 
 def _bar(console: Console) -> Progress:

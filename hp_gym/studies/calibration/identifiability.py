@@ -24,6 +24,9 @@ Controllers switch a second earlier or later, which makes single differences rou
 taken, and their spread is the roughness that is left.
 """
 
+_ROUGHEST: Final = 0.3
+"""Largest roughness of a residual's derivatives, as a share of them: beyond, a controller switches there."""
+
 _SMALLEST: Final = 1e-9
 
 _NORMAL: Final = 1.4826
@@ -93,7 +96,11 @@ def knowledge(fit: Fit) -> Knowledge:
 def _differences(
     residuals: Residuals, middle: NDArray[np.float64], data: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Derivatives of the data's residuals, and for each parameter the sum of their squared uncertainties."""
+    """Derivatives of the data's residuals, and for each parameter the sum of their squared uncertainties.
+
+    A residual at a switch (5 kW of a heater a second earlier) tells of the step more than of the parameter:
+    it counts as not seen.
+    """
     every = []
     for step in _STEPS:
         columns = []
@@ -106,6 +113,8 @@ def _differences(
     jacobians = np.stack(every)
     jacobian: NDArray[np.float64] = np.median(jacobians, axis=0)
     spread = _NORMAL * np.median(np.abs(jacobians - jacobian), axis=0)
+    switches = np.linalg.norm(spread, axis=1) > _ROUGHEST * np.linalg.norm(jacobian, axis=1)
+    jacobian[switches], spread[switches] = 0.0, 0.0
     return jacobian, np.sum(spread**2, axis=0) / len(_STEPS)
 
 

@@ -8,8 +8,6 @@ from typing import Any, Final
 
 import numpy as np
 import optuna
-from optuna.distributions import BaseDistribution, CategoricalDistribution, FloatDistribution
-from optuna.trial import TrialState
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from hp_gym.build_identity import build
@@ -17,9 +15,10 @@ from hp_gym.json_text import plain
 from hp_gym.overrides import Overrides, Value, assignments
 from hp_gym.studies import planned_runs
 from hp_gym.studies.axes import Axis, Base, Between, axes_of, require_accepted
-from hp_gym.studies.optimise import goals, trial_store
+from hp_gym.studies.optimise import goals, search_loop, trial_store
 from hp_gym.studies.optimise.found import Found
 from hp_gym.studies.optimise.goals import Goal, Limit
+from hp_gym.studies.optimise.search_loop import Outcome
 from hp_gym.studies.optimise.trial_store import OptimiseError
 from hp_gym.studies.planned_runs import REFUSED, Totals
 from hp_gym.terminal import progress_console
@@ -71,7 +70,8 @@ def optimise(
     directions = [each.direction for each in task.goals]
     study, number = trial_store.join(folder, task.definition(), directions)
     study.sampler = task.sampler(number)
-    if number == 0 and (present := task.present()) is not None:
+    # What the files say is tried first.
+    if number == 0 and (present := search_loop.as_drawn(task.axes, task.bases[0].values())) is not None:
         study.enqueue_trial(present)
     _search(study, task, trials, threads or planned_runs.processors())
     return Found(folder)
@@ -125,40 +125,6 @@ class Task:
         if len(self.goals) > 1:
             return optuna.samplers.NSGAIISampler(population_size=32, seed=seed, **told)
         return optuna.samplers.TPESampler(seed=seed, multivariate=True, n_startup_trials=24, **told)
-
-    def distributions(self) -> dict[str, BaseDistribution]:
-        """What Optuna draws from; of choices their places."""
-        return {
-            axis.name: FloatDistribution(axis.values.low, axis.values.high)
-            if isinstance(axis.values, Between)
-            else CategoricalDistribution(range(len(axis.values)))
-            for axis in self.axes
-        }
-
-    def present(self) -> dict[str, float | int] | None:
-        """What the files say, as a trial; None where they do not tell, or it is out of range."""
-        there = self.bases[0].values()
-        trial: dict[str, float | int] = {}
-        for axis in self.axes:
-            value = there.get(axis.keys[0])
-            if isinstance(axis.values, Between):
-                number = isinstance(value, int | float) and not isinstance(value, bool)
-                if not number or not axis.values.low <= float(value) <= axis.values.high:  # type: ignore[arg-type]
-                    return None
-                trial[axis.name] = float(value)  # type: ignore[arg-type]
-            elif value in axis.values:
-                trial[axis.name] = axis.values.index(value)
-            else:
-                return None
-        return trial
-
-    def changes(self, drawn: Mapping[str, Any]) -> dict[str, Value]:
-        """Overrides and choices of what was drawn."""
-        changes: dict[str, Value] = {}
-        for axis in self.axes:
-            value = drawn[axis.name]
-            changes |= axis.changes(value if isinstance(axis.values, Between) else axis.values[value])
-        return changes
 
     @property
     def kpis(self) -> list[str]:
@@ -215,33 +181,28 @@ def _search(study: optuna.Study, task: Task, trials: int, threads: int) -> None:
     shown = progress_console.is_terminal
     with Progress(*columns, console=progress_console, transient=True, disable=not shown) as progress:
         bar = progress.add_task("trials", total=trials)
-        while True:
-            done = len(study.get_trials(deepcopy=False, states=(TrialState.COMPLETE, TrialState.FAIL)))
-            progress.update(bar, completed=done)
-            if done >= trials:
-                return
-            batch = [study.ask(task.distributions()) for _ in range(min(_BATCH, trials - done))]
-            _drive(study, task, batch, threads)
+        search_loop.search(
+            study,
+            task.axes,
+            lambda batch: _drive(task, batch, threads),
+            trials,
+            batch=_BATCH,
+            seen=lambda done: progress.update(bar, completed=done),
+        )
 
 
-def _drive(study: optuna.Study, task: Task, batch: Sequence[optuna.Trial], threads: int) -> None:
-    runs = [base.run(task.changes(trial.params)) for trial in batch for base in task.bases]
+def _drive(task: Task, batch: Sequence[Mapping[str, Value]], threads: int) -> list[Outcome]:
+    runs = [base.run(changes) for changes in batch for base in task.bases]
     totals = planned_runs.drive(runs, threads, task.bases[0].substeps)
-    for place, trial in enumerate(batch):
-        rows = range(place * len(task.bases), (place + 1) * len(task.bases))
-        refusal = next((totals.refusals[row] for row in rows if totals.ends[row] == REFUSED), None)
-        if refusal is not None:
-            # Values that are right one by one need not be so together: others are tried.
-            trial.set_user_attr(trial_store.REFUSED, refusal)
-            study.tell(trial, state=TrialState.FAIL)
-            continue
-        values, beyond = _outcome(task, totals, rows)
-        trial_store.note_excesses(trial, beyond)
-        study.tell(trial, values)
+    count = len(task.bases)
+    return [_outcome(task, totals, range(place, place + count)) for place in range(0, len(runs), count)]
 
 
-def _outcome(task: Task, totals: Totals, rows: range) -> tuple[list[float], list[float]]:
+def _outcome(task: Task, totals: Totals, rows: range) -> Outcome:
     """Values of the goals, and by how much each constraint is broken, trips that did not arrive first."""
+    for row in rows:
+        if totals.ends[row] == REFUSED:
+            return Outcome(refusal=totals.refusals[row])
     beyond = [float(goals.stranded(totals, rows))]
     beyond += [limit.excess(goals.over_trips(limit.kpi, totals, rows)) for limit in task.limits]
     values = [goals.over_trips(goal.kpi, totals, rows) for goal in task.goals]
@@ -250,4 +211,4 @@ def _outcome(task: Task, totals: Totals, rows: range) -> tuple[list[float], list
             # Worse than anything, in numbers that a database takes; and not allowed.
             values[place] = -1e12 if task.goals[place].larger else 1e12
             beyond[0] = max(beyond[0], 1.0)
-    return values, [min(excess, 1e12) for excess in beyond]
+    return Outcome(values, [min(excess, 1e12) for excess in beyond])

@@ -1,92 +1,88 @@
 """Trials of a search that was stopped: the same command goes on with them."""
 
-import json
-import math
-from collections.abc import Mapping
+import shutil
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final, TypeAlias
 
-import hp_gym
-from hp_gym.files import OURS, read_bytes
+from optuna.distributions import CategoricalDistribution
+from optuna.trial import TrialState, create_trial
 
-_LARGEST_BYTES: Final = 64 * 2**20
+from hp_gym.build_identity import build
+from hp_gym.files import OURS
+from hp_gym.studies.axes import Axis
+from hp_gym.studies.optimise import search_loop, trial_store
+from hp_gym.studies.tuning.ambient_bands import BANDS, Band
+from hp_gym.studies.tuning.rule_choices import AXES, COOLING_AXES, Choices
 
-Outcome = tuple[float, float]
+Outcome: TypeAlias = tuple[float, float]
 """Mean score of a trip, and mean discomfort [K]."""
+
+_DIRECTIONS: Final[trial_store.Directions] = ("maximize", "minimize")
 
 
 class KeptTrials:
-    """A file beside the folder of results, a line a trial; removed when the search has ended.
+    """A file as `hp-gym optimise` has it, beside the folder of results; removed when the search has ended.
 
     Searches draw the same choices again for the same seed and the same outcomes, so that what a trial gave is
-    all that is needed to go on. Lines that were not written whole count as not driven.
+    all that is needed to go on.
 
     Args:
         folder: Folder of the results.
-        command: What was asked for; trials of another command are forgotten.
+        command: What was asked for; trials of another command or build, and damaged ones, are forgotten.
+        overrides: What differs in the car; part of what was asked for.
+
+    Raises:
+        OSError: The folder cannot be written to.
     """
 
-    def __init__(self, folder: Path, command: str) -> None:
+    def __init__(self, folder: Path, command: str, overrides: Sequence[str] = ()) -> None:
         place = folder.resolve()
-        self._path = place.with_name(f".{place.name}.{OURS}trials.jsonl")
-        self._head = json.dumps({"command": command, "version": hp_gym.__version__})
-        self._outcomes = self._read()
-        if not self._outcomes:
-            self._begin()
+        self._path = place.with_name(f".{place.name}.{OURS}trials")
+        definition = {"command": command, "overrides": list(overrides), "build": build()}
+        try:
+            self._study, _ = trial_store.join(self._path, definition, _DIRECTIONS)
+        except trial_store.OptimiseError:
+            self.remove()
+            self._study, _ = trial_store.join(self._path, definition, _DIRECTIONS)
+        trials = self._study.get_trials(deepcopy=False, states=(TrialState.COMPLETE,))
+        self._outcomes = {_key(trial.params): (trial.values[0], trial.values[1]) for trial in trials}
 
     def __len__(self) -> int:
         """Number of trials."""
         return len(self._outcomes)
 
-    def get(self, band: str, choices: Mapping[str, Any]) -> Outcome | None:
+    def get(self, band: Band, choices: Choices) -> Outcome | None:
         """Returns what choices gave in a band, if that is known."""
-        return self._outcomes.get(_key(band, choices))
+        return self._outcomes.get(_key(_drawn(band, choices)))
 
-    def add(self, band: str, choices: Mapping[str, Any], outcome: Outcome) -> None:
+    def add(self, band: Band, choices: Choices, outcome: Outcome) -> None:
         """Notes what choices gave in a band.
 
         Raises:
             OSError: The file cannot be written to.
         """
-        key = _key(band, choices)
-        self._outcomes[key] = outcome
-        with self._path.open("a", encoding="utf-8") as file:
-            file.write(json.dumps([key, *outcome]) + "\n")
-
-    def forget(self) -> None:
-        """Begins anew, for example because the plant has changed.
-
-        Raises:
-            OSError: The file cannot be written to.
-        """
-        self._outcomes = {}
-        self._begin()
+        params = _drawn(band, choices)
+        self._outcomes[_key(params)] = outcome
+        there = {
+            "band": CategoricalDistribution(range(len(BANDS))),
+            **search_loop.distributions(_axes(choices)),
+        }
+        self._study.add_trial(create_trial(params=params, distributions=there, values=outcome))
 
     def remove(self) -> None:
         """Removes the file."""
-        self._path.unlink(missing_ok=True)
-
-    def _begin(self) -> None:
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        self._path.write_text(self._head + "\n", encoding="utf-8")
-
-    def _read(self) -> dict[str, Outcome]:
-        try:
-            lines = read_bytes(self._path, _LARGEST_BYTES).decode("utf-8").splitlines()
-        except (OSError, ValueError):
-            return {}
-        if not lines or lines[0] != self._head:
-            return {}
-        outcomes = {}
-        for line in lines[1:]:
-            try:
-                key, score, discomfort_k = json.loads(line)
-                if isinstance(key, str) and math.isfinite(score) and math.isfinite(discomfort_k):
-                    outcomes[key] = (float(score), float(discomfort_k))
-            except (ValueError, TypeError, OverflowError, RecursionError):
-                continue
-        return outcomes
+        shutil.rmtree(self._path, ignore_errors=True)
 
 
-def _key(band: str, choices: Mapping[str, Any]) -> str:
-    return json.dumps([band, dict(choices)], sort_keys=True)
+def _axes(choices: Choices) -> list[Axis]:
+    """Those that choices are of: the paper's rules have fewer than the modern ones."""
+    return [axis for axis in AXES + COOLING_AXES if axis.keys[0] in choices]
+
+
+def _drawn(band: Band, choices: Choices) -> dict[str, float | int]:
+    return {"band": BANDS.index(band), **(search_loop.as_drawn(_axes(choices), choices) or {})}
+
+
+def _key(params: Mapping[str, float | int]) -> str:
+    return repr(sorted(params.items()))

@@ -1,6 +1,6 @@
 """What choices cost on training trips: energy, and discomfort that must not exceed the paper's."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -11,6 +11,7 @@ import numpy as np
 from hp_gym.agents.training.trips import drive
 from hp_gym.envs.hpcu_policy import HpcuPolicy
 from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
+from hp_gym.overrides import assignments
 from hp_gym.studies.tuning import rule_choices
 from hp_gym.studies.tuning.ambient_bands import Band, training_distribution
 from hp_gym.studies.tuning.kept_trials import KeptTrials, Outcome
@@ -35,36 +36,42 @@ class Objective:
         trips: Number of trips.
         seed: Seed of the first one.
         kept: Trials that were driven before, if any.
+        overrides: Changes for all trips, `key=value`.
     """
 
     def __init__(
-        self, band: Band, distribution: Path, trips: int, seed: int, kept: KeptTrials | None = None
+        self,
+        band: Band,
+        distribution: Path,
+        trips: int,
+        seed: int,
+        kept: KeptTrials | None = None,
+        *,
+        overrides: Sequence[str] = (),
     ) -> None:
         self.band = band
         self._distribution = distribution
         self._trips = trips
         self._seed = seed
         self._kept = kept
-        papers = self._drive(rule_choices.PAPER)
-        papers_k = papers[1]
-        if kept is not None and kept.get(band.title, rule_choices.PAPER) not in {None, papers}:
-            # The plant is another one since: nothing that was driven before counts.
-            kept.forget()
-        self._note(rule_choices.PAPER, papers)
+        self._overrides = overrides
+        _, papers_k = self._outcome(rule_choices.PAPER)
         self._allowed_k = papers_k - min(MARGIN_K, MARGIN_SHARE * papers_k)
 
     def score(self, choices: rule_choices.Choices) -> float:
         """Returns points a trip; more is better. Discomfort beyond what is allowed costs `PENALTY_PER_K`."""
-        outcome = None if self._kept is None else self._kept.get(self.band.title, choices)
-        if outcome is None:
-            outcome = self._drive(choices)
-            self._note(choices, outcome)
-        score, discomfort_k = outcome
+        score, discomfort_k = self._outcome(choices)
         return score - PENALTY_PER_K * max(discomfort_k - self._allowed_k, 0.0)
 
-    def _note(self, choices: rule_choices.Choices, outcome: Outcome) -> None:
-        if self._kept is not None and self._kept.get(self.band.title, choices) is None:
-            self._kept.add(self.band.title, choices, outcome)
+    def _outcome(self, choices: rule_choices.Choices) -> Outcome:
+        """What was driven before, or is driven now."""
+        if self._kept is None:
+            return self._drive(choices)
+        outcome = self._kept.get(self.band, choices)
+        if outcome is None:
+            outcome = self._drive(choices)
+            self._kept.add(self.band, choices, outcome)
+        return outcome
 
     def _drive(self, choices: rule_choices.Choices) -> Outcome:
         """Mean score of a trip, and mean discomfort over time [K]."""
@@ -77,7 +84,7 @@ class Objective:
                 continuous=True,
                 actions=HpcuPolicy.ACTIONS,
                 reward=REWARD,
-                overrides={"scenario.controller": str(file)},
+                overrides=[*self._overrides, *assignments({"scenario.controller": str(file)})],
             )
             seeds = range(self._seed, self._seed + self._trips)
             driven = drive(env, seeds, lambda *_: env.rule_based_actions())
@@ -86,7 +93,9 @@ class Objective:
 
 
 @contextmanager
-def objective(band: Band, trips: int, seed: int, kept: KeptTrials | None = None) -> Iterator[Objective]:
+def objective(
+    band: Band, trips: int, seed: int, kept: KeptTrials | None = None, *, overrides: Sequence[str] = ()
+) -> Iterator[Objective]:
     """Gives the objective of a band; see `Objective`."""
     with training_distribution(band) as distribution:
-        yield Objective(band, distribution, trips, seed, kept)
+        yield Objective(band, distribution, trips, seed, kept, overrides=overrides)

@@ -8,6 +8,7 @@ import tomlkit
 
 from hp_gym.files import atomic_write
 from hp_gym.overrides import Value
+from hp_gym.studies.axes import Axis, Between
 from hp_gym.studies.tuning.ambient_bands import Band
 
 Choices = Mapping[str, Value]
@@ -52,6 +53,43 @@ COOLING: Final[Choices] = {
 def base_of(choices: Choices) -> str:
     """Name of the rules that choices are for: those with options, or the paper's."""
     return "hpcu-modern" if choices.keys() - PAPER.keys() else "hpcu"
+
+
+def _axis(key: str, values: tuple[Value, ...] | Between) -> Axis:
+    # Named by its whole key: the sampler takes axes by name, so that other names would be another search.
+    return Axis(key, (key,), values)
+
+
+BATTERY: Final = _axis("strategy.battery", ("heat", "isolate", "source"))
+SWITCHES: Final = tuple(
+    _axis(f"strategy.{part}", (True, False)) for part in ("ptc", "ambient", "motor", "transmission")
+)
+AXES: Final = (
+    BATTERY,
+    *SWITCHES,
+    _axis("controller.cabin_set_point_degc", Between(17.0, 24.0)),
+    _axis("controller.htc_set_point_degc", Between(30.0, 90.0)),
+    _axis("controller.battery.heat_up_to_degc", Between(-20.0, 20.0)),
+    _axis("controller.ptc_from_deviation_k", Between(-20.0, 30.0)),
+    _axis("controller.blower_level", Between(0.3, 1.0)),
+    _axis("controller.heating_recirculation", Between(0.0, 0.9)),
+    _axis("controller.options.heating_blower_band_k", Between(2.0, 25.0)),
+    _axis("controller.options.least_blower_level", Between(0.2, 0.5)),
+    _axis("controller.options.ptc_below_target_k", Between(0.0, 5.0)),
+    _axis("controller.options.battery_after_cabin_band_k", Between(0.5, 5.0)),
+)
+"""What is searched; the ranges hold the modern rules' choices and what a heat pump engineer would try."""
+
+COOLING_AXES: Final = (
+    _axis("controller.cooling_recirculation", Between(0.0, 0.9)),
+    _axis("controller.cooling_blower_level", Between(0.4, 1.0)),
+    _axis("controller.cooling_chiller_set_point_degc", Between(0.0, 12.0)),
+    _axis("controller.options.cooling_blower_band_k", Between(0.5, 6.0)),
+)
+"""What is searched besides in a climate that is cooled in."""
+
+COOLED_ABOVE_DEGC: Final = 20.0
+"""A band that reaches beyond is one that is cooled in."""
 
 
 def to_toml(description: str, bands: Sequence[tuple[Band, Choices]]) -> str:
