@@ -1,9 +1,10 @@
-"""Drives vehicles on every cycle, from -30 to 45 degC, with each built-in refrigerant: all must arrive within their limits.
+"""Drives vehicles on every cycle, from -30 to 45 degC, with each refrigerant: all must arrive within limits.
 
 uv run scripts/drive_all.py compact_ev crossover_ev direct_ev
 
-Prints a line for each vehicle and refrigerant, and each trip that failed; ends with 1 if there is one. `--vehicle` takes names or
-paths. Air is humid in the cold and dry in the heat (dew points up to 16 degC), the sun shines from 20 degC up.
+Vehicles are names or paths; all built-in ones where none is given. Prints a line for each vehicle and
+refrigerant and for each trip that failed; ends with 1 if there is one. Air is humid in the cold and dry in
+the heat (dew points up to 16 degC), and the sun shines from 20 degC up.
 """
 
 import argparse
@@ -98,7 +99,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("vehicles", nargs="*", default=hp_gym.names("vehicle"), help="names or paths; all built-in ones")
+    parser.add_argument(
+        "vehicles", nargs="*", default=hp_gym.names("vehicle"), help="names or paths; all built-in ones"
+    )
     parser.add_argument("--refrigerants", nargs="+", default=hp_gym.names("refrigerant"))
     parser.add_argument("--cycles", nargs="+", default=hp_gym.names("drive cycle"))
     arguments = parser.parse_args()

@@ -131,6 +131,7 @@ fn described(layout: &Layout, architecture: &str) -> Value {
     let front_ends = layout.front_ends.iter().map(|front_end| {
         json!({
             "member": layout.members[front_end.member].name,
+            "section": layout.members[front_end.member].section,
             "air_stream": front_end.stream,
             "behind": front_end.behind.map(|other| &layout.members[layout.front_ends[other].member].name),
         })
