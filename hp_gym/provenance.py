@@ -76,8 +76,8 @@ def parsed(comment: str) -> Provenance | None:
     found = _STATUS.fullmatch(comment.lstrip("#").strip())
     if found is None:
         return None
-    ends = (None, None) if found["low"] is None else (float(found["low"]), float(found["high"]))
-    return Provenance(cast("Status", found["status"]), found["source"] or "", *ends, bool(found["times"]))
+    low, high = (None if end is None else float(end) for end in (found["low"], found["high"]))
+    return Provenance(cast("Status", found["status"]), found["source"] or "", low, high, bool(found["times"]))
 
 
 def comments(text: str) -> dict[Path, Provenance]:

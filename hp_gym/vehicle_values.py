@@ -109,11 +109,11 @@ def sheet(vehicle: str) -> VehicleSheet:
 def _owners(files: Sequence[_File]) -> dict[provenance.Path, _File]:
     """File that each value comes from: the first of the chain that has it."""
     owners: dict[provenance.Path, _File] = {}
-    refrigerant = None
+    refrigerant = ""
     for file in reversed(files):
         own = file.table.get("refrigerant", refrigerant)
         # Limits belong to the refrigerant: those of a base with another one do not count.
-        if refrigerant is not None and own.lower() != refrigerant.lower():
+        if own.lower() != refrigerant.lower():
             for path in _LIMITS:
                 owners.pop(path, None)
         refrigerant = own

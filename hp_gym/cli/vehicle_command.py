@@ -7,6 +7,8 @@ import typer
 from hp_gym.cli.output import console, fail, print_json
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from hp_gym.vehicle_values import VehicleSheet, VehicleValue
 
 _NOT_STATED = "not stated"
@@ -59,25 +61,37 @@ def _row(value: "VehicleValue") -> dict[str, Any]:
 
 
 def _print(sheet: "VehicleSheet") -> None:
-    from rich.markup import escape
-    from rich.table import Table
+    from collections import Counter
 
-    counts: dict[str, int] = {}
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for column in ("Value", "", "Unit", "Status", "Range", "Source or reason", "File"):
-        table.add_column(column, overflow="fold", justify="right" if column == "" else "left")
-    for value in sheet.values:
-        said = value.provenance
-        status = said.status if said else _NOT_STATED
-        counts[status] = counts.get(status, 0) + 1
-        row = (value.key, _short(value.value), value.unit, status, _range(value), said.source if said else "")
-        table.add_row(*(escape(text) for text in (*row, value.file)))
+    from rich.markup import escape
+
+    counts = Counter(value.provenance.status if value.provenance else _NOT_STATED for value in sheet.values)
+    told = ", ".join(f"{number} {status}" for status, number in sorted(counts.items()))
     console.print(f"{escape(sheet.name)}: {escape(sheet.description)}")
     console.print(f"Architecture {escape(sheet.architecture)}; files: {escape(', '.join(sheet.files))}")
     console.print(f"Pack: {sheet.pack_energy_kwh:.1f} kWh, charge times open-circuit voltage at 25 °C")
-    told = ", ".join(f"{number} {status}" for status, number in sorted(counts.items()))
     console.print(f"{len(sheet.values)} values: {told}\n")
-    console.print(table)
+    console.print(_table(sheet))
+
+
+def _table(sheet: "VehicleSheet") -> "Table":
+    """A row for each value, under the name of its section."""
+    from rich.markup import escape
+    from rich.table import Table
+
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    for column in ("Key", "Value", "Unit", "Status", "Range", "Source or reason", "File"):
+        table.add_column(column, overflow="fold", justify="right" if column == "Value" else "left")
+    last = ""
+    for value in sheet.values:
+        section, _, leaf = value.key.rpartition(".")
+        if section != last:
+            table.add_row(f"[cyan]{escape(section)}[/cyan]")
+        last, said = section, value.provenance
+        status, source = (said.status, said.source) if said else (_NOT_STATED, "")
+        cells = (leaf, _short(value.value), value.unit, status, _range(value), source, value.file)
+        table.add_row(*(escape(cell) for cell in cells))
+    return table
 
 
 def _short(value: Any) -> str:
