@@ -18,7 +18,7 @@ use support::{Step, physics, random_scenarios};
 /// Random scenarios for each vehicle besides the default, which has a test of its own with more.
 const RANDOM_SCENARIOS: u32 = 150;
 
-const AMBIENTS_DEGC: [f64; 8] = [-20.0, -12.0, -7.0, 0.0, 8.0, 20.0, 32.0, 40.0];
+const AMBIENTS_DEGC: [f64; 10] = [-30.0, -20.0, -12.0, -7.0, 0.0, 8.0, 20.0, 32.0, 40.0, 45.0];
 
 /// Names of the built-in vehicles, and paths of those that are examples.
 fn every_car() -> Vec<String> {
@@ -90,7 +90,7 @@ fn every_architecture_has_a_vehicle_and_every_vehicle_a_compiled_network() {
 }
 
 #[test]
-fn physics_holds_in_every_vehicle_under_the_rules_from_minus_20_to_40_degc() {
+fn physics_holds_in_every_vehicle_under_the_rules_from_minus_30_to_45_degc() {
     let mut cases = Vec::new();
     let cars = every_car();
     for vehicle in &cars {
