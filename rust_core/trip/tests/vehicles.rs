@@ -133,11 +133,14 @@ fn physics_holds_in_every_vehicle_under_the_rules_from_minus_30_to_45_degc() {
     });
 }
 
-/// A vehicle in whose cabins the sun meets air and furnishings.
-fn sun_on_furnishings(vehicle: &str, more: &[&str]) -> Plant {
+/// A vehicle in whose cabins the sun meets air and furnishings, and some exhaust heat is recovered where a loop can have it.
+fn with_every_flow(vehicle: &str, more: &[&str]) -> Plant {
     let plant = Plant::load(vehicle, &[]).unwrap_or_else(|error| panic!("{error}"));
     let sections = plant.layout().cabins.iter().map(|cabin| &plant.layout().members[cabin.member].section);
-    let shares = sections.map(|section| format!("{section}.solar_to_furnishings_share=0.5"));
+    let shares = sections.flat_map(|section| {
+        ["solar_to_furnishings_share=0.5", "exhaust_recovery_share=0.3"]
+            .map(|share| format!("{section}.{share}"))
+    });
     let changes = shares.chain(more.iter().map(|text| (*text).to_owned()));
     let changes: Vec<Override> = changes.map(|text| Override::parse(&text).expect("an assignment")).collect();
     Plant::load(vehicle, &changes).unwrap_or_else(|error| panic!("{error}"))
@@ -146,9 +149,9 @@ fn sun_on_furnishings(vehicle: &str, more: &[&str]) -> Plant {
 #[test]
 fn physics_holds_in_every_vehicle_under_random_commands_and_everything_is_at_work_at_some_time() {
     for vehicle in every_car().iter().filter(|name| *name != "jeffs2019") {
-        let plant = sun_on_furnishings(vehicle, &[]);
+        let plant = with_every_flow(vehicle, &[]);
         // Only a battery that gives nothing leaves pumps and 12 V loads without power.
-        let empty = sun_on_furnishings(vehicle, &["battery.discharge_limit.rate_scale=0.0"]);
+        let empty = with_every_flow(vehicle, &["battery.discharge_limit.rate_scale=0.0"]);
         let layout = plant.layout();
         let seen: BTreeSet<usize> = random_scenarios(&plant, RANDOM_SCENARIOS)
             .par_iter()
