@@ -4,6 +4,14 @@ from typing import Final
 
 _UNITS: Final = {
     "kwh_per_100_km": "kWh/100 km",
+    "j_m2_kg_k": "J/(m2 kg K)",
+    "w_s_m3_k": "W s/(m3 K)",
+    "w_s_k_m": "W s/(K m)",
+    "w_s_m": "W s/m",
+    "per_h": "1/h",
+    "per_k": "1/K",
+    "per_w": "1/W",
+    "rev_s2": "1/s2",
     "w_m2_k": "W/(m2 K)",
     "w_m_k": "W/(m K)",
     "j_kg_k": "J/(kg K)",
@@ -37,6 +45,8 @@ _UNITS: Final = {
     "m2": "m2",
     "m3": "m3",
     "mm": "mm",
+    "cm3": "cm3",
+    "ppm": "ppm",
     "k": "K",
     "s": "s",
     "v": "V",
@@ -45,6 +55,7 @@ _UNITS: Final = {
     "m": "m",
     "n": "N",
     "j": "J",
+    "f": "F",
 }
 """Unit by ending, longer endings before those that they end with."""
 

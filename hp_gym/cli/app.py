@@ -18,6 +18,7 @@ from hp_gym.cli.speed_command import speed
 from hp_gym.cli.sweep_command import sweep
 from hp_gym.cli.train_command import train
 from hp_gym.cli.tune_command import tune
+from hp_gym.cli.vehicle_command import vehicle
 from hp_gym.ctrl_c import hook
 
 app = typer.Typer(
@@ -31,6 +32,7 @@ for command, kept in (
     (benchmark, _AS_BEFORE),
     (run, ""),
     (scenarios, ""),
+    (vehicle, ""),
     (reproduce, _AS_BEFORE),
     (calibrate, _AS_BEFORE),
     (sweep, "runs so far are kept, and the same command goes on with them"),

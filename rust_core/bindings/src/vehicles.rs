@@ -131,6 +131,7 @@ fn described(layout: &Layout, architecture: &str) -> Value {
     let front_ends = layout.front_ends.iter().map(|front_end| {
         json!({
             "member": layout.members[front_end.member].name,
+            "section": layout.members[front_end.member].section,
             "air_stream": front_end.stream,
             "behind": front_end.behind.map(|other| &layout.members[layout.front_ends[other].member].name),
         })
@@ -154,6 +155,7 @@ fn described(layout: &Layout, architecture: &str) -> Value {
         "architecture": architecture,
         "description": layout.description,
         "refrigerates": layout.refrigerates(),
+        "sections": layout.sections(),
         "loops": layout.loops.iter().map(|circuit| named.circuit(circuit)).collect::<Vec<_>>(),
         "members": layout.members.iter().map(|member| named.member(member)).collect::<Vec<_>>(),
         "branches": (0..layout.branches.len()).map(|place| named.branch(place)).collect::<Vec<_>>(),

@@ -194,7 +194,7 @@ fn all_cars_arrive_on_all_cycles_in_all_climates() {
         .flat_map_iter(|vehicle| {
             let cycles = library::names(CYCLE).into_iter();
             cycles.flat_map(move |cycle| {
-                [-20.0, -7.0, 0.0, 15.0, 40.0].map(move |degc: f64| (vehicle.clone(), cycle, degc))
+                [-30.0, -20.0, -7.0, 0.0, 15.0, 45.0].map(move |degc: f64| (vehicle.clone(), cycle, degc))
             })
         })
         .map(|(vehicle, cycle, degc)| {

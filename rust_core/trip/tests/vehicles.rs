@@ -18,7 +18,7 @@ use support::{Step, physics, random_scenarios};
 /// Random scenarios for each vehicle besides the default, which has a test of its own with more.
 const RANDOM_SCENARIOS: u32 = 150;
 
-const AMBIENTS_DEGC: [f64; 8] = [-20.0, -12.0, -7.0, 0.0, 8.0, 20.0, 32.0, 40.0];
+const AMBIENTS_DEGC: [f64; 10] = [-30.0, -20.0, -12.0, -7.0, 0.0, 8.0, 20.0, 32.0, 40.0, 45.0];
 
 /// Names of the built-in vehicles, and paths of those that are examples.
 fn every_car() -> Vec<String> {
@@ -90,7 +90,7 @@ fn every_architecture_has_a_vehicle_and_every_vehicle_a_compiled_network() {
 }
 
 #[test]
-fn physics_holds_in_every_vehicle_under_the_rules_from_minus_20_to_40_degc() {
+fn physics_holds_in_every_vehicle_under_the_rules_from_minus_30_to_45_degc() {
     let mut cases = Vec::new();
     let cars = every_car();
     for vehicle in &cars {
@@ -111,6 +111,8 @@ fn physics_holds_in_every_vehicle_under_the_rules_from_minus_20_to_40_degc() {
         // A second cabin gets its heat and cold from machines that were made for one.
         let layout = experiment.plant.layout();
         let (least_rise_k, highest_degc) = if layout.cabins.len() == 1 { (15.0, 28.0) } else { (10.0, 32.0) };
+        // The paper's HPCU warms the battery before the cabin, and one of 60 kWh takes longer.
+        let least_rise_k = if controller == "hpcu" { f64::min(least_rise_k, 12.0) } else { least_rise_k };
         if controller.starts_with("hpcu") && (0.0..=8.0).contains(&ambient_degc) {
             assert!((20.0..24.0).contains(&cabin_degc), "{vehicle}, {ambient_degc}: {cabin_degc} degC");
         }
@@ -131,11 +133,14 @@ fn physics_holds_in_every_vehicle_under_the_rules_from_minus_20_to_40_degc() {
     });
 }
 
-/// A vehicle in whose cabins the sun meets air and furnishings.
-fn sun_on_furnishings(vehicle: &str, more: &[&str]) -> Plant {
+/// A vehicle in whose cabins the sun meets air and furnishings, and some exhaust heat is recovered where a loop can have it.
+fn with_every_flow(vehicle: &str, more: &[&str]) -> Plant {
     let plant = Plant::load(vehicle, &[]).unwrap_or_else(|error| panic!("{error}"));
     let sections = plant.layout().cabins.iter().map(|cabin| &plant.layout().members[cabin.member].section);
-    let shares = sections.map(|section| format!("{section}.solar_to_furnishings_share=0.5"));
+    let shares = sections.flat_map(|section| {
+        ["solar_to_furnishings_share=0.5", "exhaust_recovery_share=0.3"]
+            .map(|share| format!("{section}.{share}"))
+    });
     let changes = shares.chain(more.iter().map(|text| (*text).to_owned()));
     let changes: Vec<Override> = changes.map(|text| Override::parse(&text).expect("an assignment")).collect();
     Plant::load(vehicle, &changes).unwrap_or_else(|error| panic!("{error}"))
@@ -144,9 +149,9 @@ fn sun_on_furnishings(vehicle: &str, more: &[&str]) -> Plant {
 #[test]
 fn physics_holds_in_every_vehicle_under_random_commands_and_everything_is_at_work_at_some_time() {
     for vehicle in every_car().iter().filter(|name| *name != "jeffs2019") {
-        let plant = sun_on_furnishings(vehicle, &[]);
+        let plant = with_every_flow(vehicle, &[]);
         // Only a battery that gives nothing leaves pumps and 12 V loads without power.
-        let empty = sun_on_furnishings(vehicle, &["battery.discharge_limit.rate_scale=0.0"]);
+        let empty = with_every_flow(vehicle, &["battery.discharge_limit.rate_scale=0.0"]);
         let layout = plant.layout();
         let seen: BTreeSet<usize> = random_scenarios(&plant, RANDOM_SCENARIOS)
             .par_iter()
