@@ -122,6 +122,7 @@ class Layout(TypedDict):
 
     architecture: str
     refrigerates: bool
+    sections: list[str]
     loops: list[Loop]
     members: list[Member]
     branches: list[Branch]

@@ -154,6 +154,7 @@ fn described(layout: &Layout, architecture: &str) -> Value {
         "architecture": architecture,
         "description": layout.description,
         "refrigerates": layout.refrigerates(),
+        "sections": layout.sections(),
         "loops": layout.loops.iter().map(|circuit| named.circuit(circuit)).collect::<Vec<_>>(),
         "members": layout.members.iter().map(|member| named.member(member)).collect::<Vec<_>>(),
         "branches": (0..layout.branches.len()).map(|place| named.branch(place)).collect::<Vec<_>>(),
