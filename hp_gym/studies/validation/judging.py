@@ -45,7 +45,11 @@ class Judged:
     def tolerance(self) -> str:
         """What is allowed beyond it, in words."""
         row = self.row
-        return f"{row.tolerance_pct:g} %" if row.tolerance_pct is not None else f"{row.tolerance:g} {_unit(row)}".strip()
+        return (
+            f"{row.tolerance_pct:g} %"
+            if row.tolerance_pct is not None
+            else f"{row.tolerance:g} {_unit(row)}".strip()
+        )
 
     def to_json(self) -> dict[str, Any]:
         """The row as plain data."""

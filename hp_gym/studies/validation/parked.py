@@ -73,7 +73,9 @@ def _off(loaded: _core.Experiment) -> NDArray[np.float64]:
     cabin = loaded.layout()["cabins"][0]
     flap = cabin["recirculation_actuator"]
     closed = {cabin["blower_actuator"]: 0.0, flap: ranges[flap][1]}
-    command = loaded.encode({**closed, **{heater["actuator"]: "off" for heater in loaded.layout()["heaters"]}})
+    command = loaded.encode(
+        {**closed, **{heater["actuator"]: "off" for heater in loaded.layout()["heaters"]}}
+    )
     rows = []
     for _ in range(loaded.duration_s):
         run.step(command)

@@ -257,7 +257,9 @@ class Published(BaseModel):
     def _check_experiment(self, experiment: Experiment, names: list[str]) -> None:
         if isinstance(experiment, RigExperiment):
             if experiment.rig not in self.rig:
-                raise ValueError(f"experiment `{experiment.name}` names `{experiment.rig}`; there is no such rig")
+                raise ValueError(
+                    f"experiment `{experiment.name}` names `{experiment.rig}`; there is no such rig"
+                )
             before = names[: names.index(experiment.name)]
             if experiment.displacement_of is not None and experiment.displacement_of not in before:
                 raise ValueError(

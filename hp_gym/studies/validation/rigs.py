@@ -24,7 +24,9 @@ _CLOSEST: Final = 1e-4
 _MOST_TRIES: Final = 12
 
 
-def run(published: Published, experiment: RigExperiment, known: Mapping[str, Figures], folder: Path) -> Figures:
+def run(
+    published: Published, experiment: RigExperiment, known: Mapping[str, Figures], folder: Path
+) -> Figures:
     """Drives a rig to a steady point, setting its displacement where a capacity is published.
 
     Args:
@@ -91,7 +93,11 @@ def _has(vehicle: str, key: str) -> bool:
 def _steady(
     rig: Rig, experiment: RigExperiment, changes: Mapping[str, Any], displacement_cm3: float | None
 ) -> Figures:
-    own = {} if displacement_cm3 is None else {"vehicle.refrigeration.compressor.displacement_cm3": displacement_cm3}
+    own = (
+        {}
+        if displacement_cm3 is None
+        else {"vehicle.refrigeration.compressor.displacement_cm3": displacement_cm3}
+    )
     loaded = _core.Experiment(
         "jeffs2019/case1-1", overrides=assignments({**changes, **own}), vehicle=rig.vehicle
     )
@@ -114,7 +120,9 @@ def _steady(
     return {name: float(value) for name, value in figures.items()}
 
 
-def _drive(loaded: _core.Experiment, rig: Rig, experiment: RigExperiment) -> np.ndarray[Any, np.dtype[np.float64]]:
+def _drive(
+    loaded: _core.Experiment, rig: Rig, experiment: RigExperiment
+) -> np.ndarray[Any, np.dtype[np.float64]]:
     """Signals of every second; the compressor's power is led until its speed is right."""
     run = loaded.start()
     ranges = dict(zip(loaded.actuator_names, loaded.actuator_ranges(), strict=True))

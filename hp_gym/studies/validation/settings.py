@@ -6,7 +6,9 @@ from typing import Any
 from hp_gym import _core
 
 
-def climate(ambient_degc: float, relative_humidity: float, solar_gain_w: float, occupants: int) -> dict[str, Any]:
+def climate(
+    ambient_degc: float, relative_humidity: float, solar_gain_w: float, occupants: int
+) -> dict[str, Any]:
     """Changes of a scenario's weather and of who is in the car."""
     return {
         "scenario.climate.ambient_temperature_degc": ambient_degc,
@@ -24,8 +26,15 @@ def used(vehicle: str, strategy: Mapping[str, bool | str]) -> dict[str, Any]:
         strategy: What differs.
     """
     members = _core.vehicle_layout(vehicle)["members"]
-    sources = {member["name"]: True for member in members if member["kind"] in ("motor", "transmission", "front-end")}
-    plain: dict[str, bool | str] = {"battery": "isolate", "climate_control": "heat", "ptc": True, "heat_pump": True}
+    sources = {
+        member["name"]: True for member in members if member["kind"] in ("motor", "transmission", "front-end")
+    }
+    plain: dict[str, bool | str] = {
+        "battery": "isolate",
+        "climate_control": "heat",
+        "ptc": True,
+        "heat_pump": True,
+    }
     requests = {
         f"scenario.heat_demand.{member['name']}_w": 20000.0
         for member in members

@@ -47,7 +47,9 @@ class Trip:
     until_empty: bool
 
 
-def plan(published: Published, experiment: TripExperiment, vehicles: Mapping[str, str], folder: Path) -> list[Trip]:
+def plan(
+    published: Published, experiment: TripExperiment, vehicles: Mapping[str, str], folder: Path
+) -> list[Trip]:
     """Plans the runs of an experiment, one for each car and ambient temperature.
 
     Args:

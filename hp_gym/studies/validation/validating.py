@@ -81,7 +81,9 @@ def drive(
             case TripExperiment():
                 planned += trips.plan(loaded, experiment, vehicles, folder)
             case LayoutExperiment():
-                results[experiment.name] = {experiment.vehicle: {"sets_of_sources": sets_of_sources(experiment.vehicle)}}
+                results[experiment.name] = {
+                    experiment.vehicle: {"sets_of_sources": sets_of_sources(experiment.vehicle)}
+                }
     return results | trips.run(planned, threads)
 
 
