@@ -61,6 +61,8 @@ def _changes(published: Published, experiment: ParkedExperiment, vehicle: str, t
         "scenario.initial.state_of_charge_pct": 80.0,
         "controller.cabin_set_point_degc": experiment.set_point_degc,
     }
+    if experiment.blower_level is not None:
+        changes["controller.blower_level"] = experiment.blower_level
     if experiment.cabin_degc is not None:
         changes["scenario.initial.cabin_temperature_degc"] = experiment.cabin_degc
     return changes

@@ -73,6 +73,7 @@ class ParkedExperiment(BaseModel):
     """A car at rest in a chamber, soaked at its temperature.
 
     Attributes:
+        blower_level: Largest blower level; the rules' own by default.
         off: Whether nothing runs, flaps closed.
         cabin_degc: Cabin at the start, where it is not the soak temperature.
     """
@@ -85,6 +86,7 @@ class ParkedExperiment(BaseModel):
     ambient_degc: float
     minutes: Annotated[float, Field(ge=30.0)]
     set_point_degc: float = 22.0
+    blower_level: float | None = None
     off: bool = False
     cabin_degc: float | None = None
     solar_gain_w: float = 0.0
@@ -100,6 +102,7 @@ class TripExperiment(BaseModel):
         until_empty: Whether they are repeated until the battery is empty.
         cruise_km_h: Constant speed instead of cycles, for `minutes`.
         climate: `auto`, `heat` (never cools), or `off`.
+        dynamometer: Whether the road load is that of 24 degC whatever the air is: no denser air, no colder tyres.
         initial: Further temperatures at the start.
     """
 
@@ -117,6 +120,7 @@ class TripExperiment(BaseModel):
     ambient_degc: float | None = None
     ambients_degc: tuple[float, ...] = ()
     climate: Literal["auto", "heat", "off"]
+    dynamometer: bool = False
     strategy: dict[str, bool | str] = {}
     changes: _Changes = {}
     initial: dict[str, float] = {}

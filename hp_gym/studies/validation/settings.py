@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from hp_gym import _core
+from hp_gym import _core, toml_files
 
 
 def climate(
@@ -42,3 +42,15 @@ def used(vehicle: str, strategy: Mapping[str, bool | str]) -> dict[str, Any]:
     }
     wanted = {**plain, **sources, **strategy}
     return {f"scenario.strategy.{key}": value for key, value in wanted.items()} | requests
+
+
+def number(vehicle: str, section: str, key: str) -> float:
+    """A number of a vehicle's file or of those that it is based on.
+
+    Raises:
+        KeyError: None of them has it.
+    """
+    tables = toml_files.load("vehicle", vehicle)
+    if key in tables.get(section, {}):
+        return float(tables[section][key])
+    return number(tables["base"], section, key)

@@ -21,6 +21,9 @@ EMPTY: Final = "battery_empty"
 LONGEST_KM: Final = 900.0
 """No car here goes further; what does, ends the run with an error."""
 
+_COAST_DOWN_K: Final = 297.05
+_ZERO_CELSIUS_K: Final = 273.15
+
 _OFF: Final = {"heat_pump": False, "ptc": False}
 _NO_AIR: Final = {
     "controller.blower_level": 0.0,
@@ -93,13 +96,23 @@ def _changes(experiment: TripExperiment, vehicle: str, cycle: str, ambient_degc:
     strategy = {"climate_control": control, **experiment.strategy}
     if experiment.climate == "off":
         strategy |= _OFF
+    road_load = _fixed_road_load(vehicle, ambient_degc) if experiment.dynamometer else {}
     return {
         **settings.climate(ambient_degc, 0.8 if ambient_degc < 25.0 else 0.4, 0.0, occupants=1),
         **settings.used(vehicle, strategy),
         "scenario.cycle": cycle,
         "scenario.initial.state_of_charge_pct": 100.0,
         **{f"scenario.initial.{key}": value for key, value in experiment.initial.items()},
-        **{f"vehicle.{key}": value for key, value in experiment.changes.items()},
+        **{f"vehicle.{key}": value for key, value in {**road_load, **experiment.changes}.items()},
+    }
+
+
+def _fixed_road_load(vehicle: str, ambient_degc: float) -> dict[str, float]:
+    """Road load of a dynamometer: drag area less in proportion as the air is denser, tyres as in their test."""
+    density = _COAST_DOWN_K / (ambient_degc + _ZERO_CELSIUS_K)
+    return {
+        "body.drag_area_m2": settings.number(vehicle, "body", "drag_area_m2") / density,
+        "body.rolling_resistance_rise_per_k": 0.0,
     }
 
 
