@@ -1,16 +1,20 @@
 # /// script
 # requires-python = ">=3.11"
-# dependencies = ["ev-heat-pump-gym", "pybamm==26.10.1.1", "numpy"]
+# dependencies = ["ev-heat-pump-gym", "pybamm==26.10.1.1", "numpy", "pandas", "scipy"]
 #
 # [tool.uv.sources]
 # ev-heat-pump-gym = { path = ".." }
 # ///
 """Compares the plant's battery with PyBaMM's Thevenin model: same tables, current and temperature, second by second.
 
-Both have one RC pair. PyBaMM integrates state of charge and voltage of the pair by itself (IDAKLU); it is given the current of a cell,
-constant over each second, the temperature at the second's beginning, and R0, R1, C1 and the open-circuit voltage as the vehicle's file
-has them, scaled to its cell. Over a second the plant gives the mean voltage, so PyBaMM's is averaged too (Simpson, five points). Heat is
-that of the resistors; PyBaMM's own figure counts what the capacitor takes up as heat at once, and is shown beside it.
+Both have one RC pair. PyBaMM integrates state of charge and the pair's voltage by itself (IDAKLU); it is given the current of a cell,
+constant over each second, the temperature at the second's beginning, and R0, R1, C1 and open-circuit voltage as the vehicle's file has
+them, scaled to its cell. Over a second the plant gives the mean voltage, so PyBaMM's is averaged too (Simpson, five points).
+
+One difference is of the model, not of its numbers: where temperature or state of charge change C1, PyBaMM keeps the pair's voltage, so
+that energy comes from nowhere or is lost, while the plant keeps the energy stored in it, since its ledger closes to 1e-9. The
+comparison is made with that term added to PyBaMM's pair, and without it, as it is, where C1 changes less than twofold.
+Heat is that of the resistors; PyBaMM's own figure counts what the capacitor takes up as heat at once.
 
     uv run scripts/check_battery.py
 """
@@ -18,22 +22,25 @@ that of the resistors; PyBaMM's own figure counts what the capacitor takes up as
 import sys
 import tomllib
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 import pybamm
+from scipy.interpolate import interpn
 
 import hp_gym
 
 VEHICLE: Final = Path(__file__).parents[1] / "configs" / "vehicles" / "jeffs2019.toml"
 CASES: Final = (
-    ("jeffs2019/case1-1", 0.0),  # heated to 20 degC
-    ("jeffs2019/case1-3", 0.0),  # isolated
-    ("jeffs2019/case1-3", -20.0),
-    ("jeffs2019/case1-3", 25.0),
+    ("jeffs2019/case1-1", 0.0, True),  # heated to 20 degC
+    ("jeffs2019/case1-3", 0.0, True),  # isolated
+    ("jeffs2019/case1-3", -20.0, True),
+    ("jeffs2019/case1-3", 25.0, True),
+    ("jeffs2019/case1-3", 25.0, False),
 )
-"""Scenario and ambient temperature [degC]."""
+"""Scenario, ambient temperature [degC], and whether PyBaMM's pair keeps its energy, as the plant's does."""
 
 TOLERANCE_V: Final = 1e-3
 HEAT_TOLERANCE: Final = 5e-3
@@ -73,7 +80,7 @@ def tables(battery: dict[str, Any]) -> dict[str, Function]:
     }
 
 
-def thevenin(battery: dict[str, Any], state_of_charge: float) -> pybamm.Simulation:
+def thevenin(battery: dict[str, Any], state_of_charge: float, *, keeps_energy: bool) -> pybamm.Simulation:
     """PyBaMM's model of a cell at rest."""
     values = pybamm.ParameterValues("ECM_Example")
     capacity_ah = battery["cell_capacity_ah"]
@@ -91,32 +98,56 @@ def thevenin(battery: dict[str, Any], state_of_charge: float) -> pybamm.Simulati
         }
     )
     model = pybamm.equivalent_circuit.Thevenin()
+    pair_v = model.variables["Element-1 overpotential [V]"]
+    if keeps_energy:
+        rise = pybamm.InputParameter("Half the rise of ln C1 [1/s]")
+        model.rhs[pair_v] = model.rhs[pair_v] - rise * pair_v
     # The model stops at a full battery, where trips begin.
     model.events = []
     solver = pybamm.IDAKLUSolver(rtol=1e-9, atol=1e-9)
     return pybamm.Simulation(model, parameter_values=values, solver=solver)
 
 
-def compare(scenario: str, ambient_degc: float, battery: dict[str, Any]) -> tuple[float, float, float]:
+def capacitance_f(
+    battery: dict[str, Any], temperature_degc: np.ndarray[Any, Any], state_of_charge: np.ndarray[Any, Any]
+) -> np.ndarray[Any, Any]:
+    """C1 of a cell at each second."""
+    circuit = battery["circuit"]
+    scale = battery["resistance_scale"] * battery["circuit_reference_capacity_ah"] / battery["cell_capacity_ah"]
+    axes = circuit["temperature_degc"], circuit["state_of_charge"]
+    resistance = np.array(circuit["polarisation_resistance_ohm"])
+    time_constant = resistance * np.array(circuit["polarisation_capacitance_f"])
+    points = np.column_stack([temperature_degc, state_of_charge])
+    table = partial(interpn, axes, xi=points, bounds_error=False, fill_value=None)
+    return np.asarray(table(values=time_constant) / (table(values=resistance) * scale))
+
+
+def compare(
+    scenario: str, ambient_degc: float, battery: dict[str, Any], *, keeps_energy: bool
+) -> tuple[float, float]:
     """Prints one trip.
 
     Returns:
-        Largest difference of a cell's voltage [V], relative differences of the heat of the trip: of the resistors, of PyBaMM's own figure.
+        Largest difference of a cell's voltage [V], relative difference of the resistors' heat over the trip.
     """
     overrides = [f"scenario.climate.ambient_temperature_degc={ambient_degc}"]
     trip = hp_gym.simulate(scenario, overrides=overrides).to_pandas()
     cells = battery["cells_in_series"] * battery["strings_in_parallel"]
     current_a = trip["battery_current_a"].to_numpy() / battery["strings_in_parallel"]
     voltage_v = trip["battery_voltage_v"].to_numpy() / battery["cells_in_series"]
-    temperature_k = trip["battery_temperature_degc"].to_numpy() + ZERO_CELSIUS_K
+    temperature_degc = trip["battery_temperature_degc"].to_numpy()
     loss_j = trip["battery_loss_w"].to_numpy() / cells
-    simulation = thevenin(battery, float(trip["charge_soc"].iloc[0]))
+    capacitance = capacitance_f(battery, temperature_degc, trip["charge_soc"].to_numpy())
+    half_rise = 0.5 * np.diff(np.log(capacitance))
+    simulation = thevenin(battery, float(trip["charge_soc"].iloc[0]), keeps_energy=keeps_energy)
     worst_v, heat_j, own_heat_j = 0.0, 0.0, 0.0
     for second in range(1, len(trip)):
         inputs = {
             "Current function [A]": current_a[second],
-            "Battery temperature [K]": temperature_k[second - 1],
+            "Battery temperature [K]": temperature_degc[second - 1] + ZERO_CELSIUS_K,
         }
+        if keeps_energy:
+            inputs["Half the rise of ln C1 [1/s]"] = half_rise[second - 1]
         step = simulation.step(1.0, t_interp=np.linspace(0.0, 1.0, 5), inputs=inputs, save=False)
         entries = {name: np.asarray(step[name].entries)[-5:] for name in NAMES}
         worst_v = max(worst_v, abs(float(SIMPSON @ entries["Voltage [V]"]) - voltage_v[second]))
@@ -124,13 +155,15 @@ def compare(scenario: str, ambient_degc: float, battery: dict[str, Any]) -> tupl
         heat_j += float(SIMPSON @ (entries["Element-0 irreversible heat generation [W]"] + pair_w))
         own_heat_j += float(SIMPSON @ entries["Total heat generation [W]"])
     plant_j = float(loss_j[1:].sum())
-    shares = heat_j / plant_j - 1.0, own_heat_j / plant_j - 1.0
+    heat, own_heat = heat_j / plant_j - 1.0, own_heat_j / plant_j - 1.0
     print(
-        f"{scenario} at {ambient_degc:g} degC: {len(trip) - 1} s, largest current {np.abs(current_a).max():.0f} A a cell, "
-        f"{voltage_v[1:].min():.3f}..{voltage_v[1:].max():.3f} V; voltage {1e3 * worst_v:.3f} mV, heat {100 * shares[0]:+.3f} % "
-        f"(PyBaMM's own {100 * shares[1]:+.3f} %) of {plant_j / 1e3:.1f} kJ a cell"
+        f"{scenario} at {ambient_degc:g} degC, {'energy' if keeps_energy else 'voltage'} of the pair kept: "
+        f"{np.abs(current_a).max():.0f} A, {voltage_v[1:].min():.3f}..{voltage_v[1:].max():.3f} V a cell, "
+        f"C1 {capacitance.min():.0f}..{capacitance.max():.0f} F; voltage {1e3 * worst_v:.3f} mV, "
+        f"heat {100.0 * heat:+.3f} % (PyBaMM's own {100.0 * own_heat:+.3f} %) of {plant_j / 1e3:.1f} kJ",
+        flush=True,
     )
-    return worst_v, *shares
+    return worst_v, abs(heat)
 
 
 NAMES: Final = (
@@ -145,12 +178,10 @@ NAMES: Final = (
 def main() -> int:
     """Compares all trips; the exit status tells whether everything agrees."""
     battery = tomllib.loads(VEHICLE.read_text(encoding="utf-8"))["battery"]
-    found = [compare(*case, battery) for case in CASES]
-    worst_v = max(row[0] for row in found)
-    heat = max(abs(row[1]) for row in found)
-    print(
-        f"largest: {1e3 * worst_v:.3f} mV of {1e3 * TOLERANCE_V:g}, heat {100 * heat:.3f} % of {100 * HEAT_TOLERANCE:g}"
-    )
+    found = [compare(name, degc, battery, keeps_energy=kept) for name, degc, kept in CASES]
+    worst_v, heat = (max(values) for values in zip(*found, strict=True))
+    allowed = f"{1e3 * TOLERANCE_V:g} mV and {100.0 * HEAT_TOLERANCE:g} %"
+    print(f"largest: {1e3 * worst_v:.3f} mV, heat {100.0 * heat:.3f} %; allowed: {allowed}")
     return int(worst_v > TOLERANCE_V or heat > HEAT_TOLERANCE)
 
 

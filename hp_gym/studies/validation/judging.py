@@ -84,7 +84,7 @@ def _rows(published: Published, row: Row, results: Results) -> Iterator[Judged]:
     values = _values(row, results)
     if row.over == "each" and len(values) > 1:
         for number, (key, value) in enumerate(values.items(), start=1):
-            yield _judged(row, f"{row.id}{number}", key, value)
+            yield _judged(row, f"{row.id}.{number}", key, value)
         return
     vehicle = next(iter(values)) if len(values) == 1 else _names(published, values)
     yield _judged(row, row.id, vehicle, float(np.mean(list(values.values()))))
