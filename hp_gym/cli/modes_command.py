@@ -26,13 +26,11 @@ def modes(
     changes: many_runs.Changes = None,
     overrides: many_runs.Overrides = None,
     most: Annotated[int, typer.Option(min=1, help="Modes that the table of all temperatures shows.")] = 15,
-    plot: Annotated[
-        Path | None, typer.Option(help="Draw a heat map to this .png, .svg or .pdf file.")
-    ] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw a heat map to a .png, .svg or .pdf file.")] = None,
     threads: many_runs.Threads = None,
     json: Annotated[bool, typer.Option("--json", help="Print all modes as JSON.")] = False,
 ) -> None:
-    """Drives all feasible modes of a vehicle over ambient temperatures and ranks them by energy at comfort."""
+    """Drives all feasible modes of a vehicle over ambient temperatures, ranked by energy at comfort."""
     from hp_gym.files import require_suffix
     from hp_gym.overrides import assignments
     from hp_gym.studies.modes import comparing, modes_report
@@ -40,9 +38,10 @@ def modes(
     began_s = perf_counter()
     try:
         if plot is not None:
+            from hp_gym.pictures.plotting import PICTURE_SUFFIXES
             from hp_gym.studies.modes import modes_plot
 
-            require_suffix(plot, modes_plot.PICTURE_SUFFIXES)
+            require_suffix(plot, PICTURE_SUFFIXES)
         compared = comparing.compare(
             vehicle,
             cycle=cycle,

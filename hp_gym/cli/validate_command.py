@@ -18,7 +18,7 @@ def validate(
         typer.Option(
             "--car",
             metavar="NAME=VEHICLE",
-            help="Let a vehicle stand for a car of the file; may be repeated.",
+            help="A vehicle for a car of the file; may be repeated.",
         ),
     ] = None,
     markdown: Annotated[Path | None, typer.Option(help="Write the rows to this .md file.")] = None,
@@ -26,16 +26,17 @@ def validate(
     threads: many_runs.Threads = None,
     json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
 ) -> None:
-    """Sets rigs, chamber tests and cars beside published values; tolerances were fixed before the first run."""
+    """Sets rigs, chamber tests and cars beside published values, by tolerances fixed before the first run."""
     from hp_gym.files import atomic_write, require_suffix
     from hp_gym.studies.validation import validating, validation_report
 
     began_s = perf_counter()
     try:
         if plot is not None:
+            from hp_gym.pictures.plotting import PICTURE_SUFFIXES
             from hp_gym.studies.validation import validation_plot
 
-            require_suffix(plot, validation_plot.PICTURE_SUFFIXES)
+            require_suffix(plot, PICTURE_SUFFIXES)
         if markdown is not None:
             require_suffix(markdown, (".md",))
         file, judged = validating.validate(published, cars=_cars(car or []), threads=threads)

@@ -1,1 +1,1 @@
-"""Every way in which a vehicle's architecture lets heat be moved, driven over ambient temperatures and ranked by energy at comfort."""
+"""Every way in which a vehicle can move heat, over ambient temperatures, ranked by energy at comfort."""

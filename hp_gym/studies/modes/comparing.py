@@ -13,13 +13,12 @@ from hp_gym.overrides import Overrides, assignments
 from hp_gym.studies import planned_runs
 from hp_gym.studies.axes import parse_axis
 from hp_gym.studies.modes.enumeration import Mode, modes
-from hp_gym.studies.planned_runs import Planned
 
 AMBIENTS_DEGC: Final = tuple(float(f"{value:.4g}") for value in np.linspace(-20.0, 40.0, 15))
 """Fifteen, evenly from -20 to 40 degC."""
 
 COMFORT_K: Final = 1.0
-"""A mode is comfortable at an ambient temperature if its discomfort is at most this much above the least of all modes."""
+"""A mode is comfortable where its discomfort is at most this much above the least of all modes."""
 
 _SCENARIO: Final = "jeffs2019/case1-1"
 _ARRIVED: Final = "arrived"
@@ -112,15 +111,15 @@ def compare(
 ) -> Compared:
     """Drives all modes of a vehicle at all ambient temperatures.
 
-    Connections of a mode hold for the whole trip; the plant still opens one whose heat would flow the wrong way. The rules treat the
-    battery, connect the cabin, switch between heating and cooling, and set compressor, blower, flows and recirculation.
+    Connections of a mode hold for the whole trip; the plant still opens one whose heat would flow the wrong way.
+    The rules treat the battery, connect the cabin, switch between heating and cooling, and set all levels.
 
     Args:
         vehicle: Name or path.
         cycle: Name or path of a drive cycle.
         controller: Name or path of rules.
         ambients_degc: Ambient temperatures; all starts soaked at them.
-        store_degc: Temperature of heat stores at the start; soaked like all else by default, so that no heat is for free.
+        store_degc: Temperature of heat stores at the start; soaked by default: no heat is for free.
         overrides: Changes for all runs.
         threads: Native threads; one a processor by default.
 
@@ -138,7 +137,7 @@ def compare(
     if not found:
         raise ModesError(f"vehicle `{name}` has neither a heat pump nor a heater")
     always = {**_always(layout, store_degc), "scenario.cycle": os.fspath(cycle)}
-    planned: list[Planned] = [
+    planned: list[planned_runs.Planned] = [
         (
             _SCENARIO,
             os.fspath(controller),
@@ -170,14 +169,14 @@ def compare(
 
 
 def ambients(text: str) -> tuple[float, ...]:
-    """Reads ambient temperatures as the command line gives them: `LOW:HIGH/COUNT`, `LOW:HIGH:STEP` or `A,B,C`.
+    """Reads ambient temperatures of the command line: `LOW:HIGH/COUNT`, `LOW:HIGH:STEP` or `A,B,C`.
 
     Raises:
         ValueError: It is none of these.
     """
     _, values = parse_axis(f"ambient={text}")
     if not isinstance(values, list):
-        raise ModesError(f"ambient `{text}` is a range, but must be LOW:HIGH/COUNT, LOW:HIGH:STEP or A,B,C")
+        raise ModesError(f"ambient `{text}` must be LOW:HIGH/COUNT, LOW:HIGH:STEP or A,B,C")
     numbers = [value for value in values if isinstance(value, int | float) and not isinstance(value, bool)]
     if len(numbers) != len(values):
         raise ModesError(f"ambient `{text}` must be temperatures in degC")
@@ -185,17 +184,17 @@ def ambients(text: str) -> tuple[float, ...]:
 
 
 def _always(layout: Any, store_degc: float | None) -> dict[str, Any]:
-    """What holds in all modes: nothing limits heat flows; what loops without refrigerant connect follows the rules."""
+    """What holds in all modes: nothing limits heat flows, and no source is barred."""
     members = layout["members"]
-    changes: dict[str, Any] = {
-        "scenario.strategy.climate_control": "auto",
-        **{
-            f"scenario.heat_demand.{member['name']}_w": _LARGEST_REQUEST_W
-            for member in members
-            if member["connection"]
-        },
-        **{f"scenario.strategy.{member['name']}": True for member in members if member["kind"] in _SOURCES},
+    requests = {
+        f"scenario.heat_demand.{member['name']}_w": _LARGEST_REQUEST_W
+        for member in members
+        if member["connection"]
     }
+    sources = {
+        f"scenario.strategy.{member['name']}": True for member in members if member["kind"] in _SOURCES
+    }
+    changes: dict[str, Any] = {"scenario.strategy.climate_control": "auto", **requests, **sources}
     if store_degc is not None:
         stores = [member["name"] for member in members if member["kind"] == "store"]
         changes |= {f"scenario.initial.{store}_temperature_degc": store_degc for store in stores}

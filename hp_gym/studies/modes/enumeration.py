@@ -8,7 +8,7 @@ from typing import Any, Final
 ISOLATED: Final = "isolated"
 
 _FOLLOWED: Final = ("battery", "cabin", "plate")
-"""Kinds of members that the rules connect: battery by its treatment, the cabin by its need, a plate with the battery."""
+"""Kinds of members that the rules connect: battery by treatment, cabin by need, plate with the battery."""
 
 Layout = Mapping[str, Any]
 """What a vehicle is made of, as `_core.vehicle_layout` tells."""
@@ -52,8 +52,8 @@ class Mode:
 def modes(layout: Layout) -> list[Mode]:
     """Lists all feasible modes of a vehicle.
 
-    Feasible is what can move heat: with the heat pump there must be a source for heating or a sink for cooling, without it a heater.
-    Members of loops without refrigerant (a radiator, what it cools) follow the rules.
+    Feasible is what can move heat: with the heat pump there must be a source for heating or a sink for cooling;
+    else a heater. Members of loops without refrigerant (a radiator, what it cools) follow the rules.
 
     Args:
         layout: What the vehicle is made of.
@@ -89,7 +89,7 @@ def _without_heat_pump(layout: Layout) -> Iterator[Mode]:
 
 
 def _held(layout: Layout) -> dict[str, list[str]]:
-    """Members whose connection is held, with what they can be connected to: loops that refrigerant tempers."""
+    """Members whose connection is held, and their options: loops that refrigerant tempers."""
     tempered = {loop["name"] for loop in layout["loops"] if loop["exchanger"] is not None}
     found = {}
     for member in layout["members"]:

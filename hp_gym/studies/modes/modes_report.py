@@ -49,6 +49,7 @@ def closing_line(compared: Compared, wall_s: float) -> str:
     """What was driven, and what comfortable means."""
     runs = compared.energy_kwh.size
     return (
-        f"{len(compared.modes)} modes x {len(compared.ambients_degc)} ambient temperatures = {runs:,} trips in {wall_s:.1f} s; "
+        f"{len(compared.modes)} modes x {len(compared.ambients_degc)} ambient temperatures = {runs:,} trips "
+        f"in {wall_s:.1f} s; "
         f"comfortable: at most {COMFORT_K:g} K more discomfort than the best at that ambient temperature."
     )

@@ -1,1 +1,1 @@
-"""The model beside published values: rigs, chamber tests and cars, each row judged by a tolerance that was written down before."""
+"""The model beside published values of rigs, chambers and cars, by tolerances written down before."""

@@ -77,23 +77,17 @@ def _unit(row: Row) -> str:
 
 def judge(published: Published, results: Results) -> list[Judged]:
     """Judges all rows, in the order of the file."""
-    return [judged for row in published.row for judged in _rows(published, row, results)]
+    return [judged for row in published.row for judged in _rows(row, results)]
 
 
-def _rows(published: Published, row: Row, results: Results) -> Iterator[Judged]:
+def _rows(row: Row, results: Results) -> Iterator[Judged]:
     values = _values(row, results)
     if row.over == "each" and len(values) > 1:
         for number, (key, value) in enumerate(values.items(), start=1):
             yield _judged(row, f"{row.id}.{number}", key, value)
         return
-    vehicle = next(iter(values)) if len(values) == 1 else _names(published, values)
+    vehicle = ", ".join(dict.fromkeys(key.partition(" ")[0] for key in values))
     yield _judged(row, row.id, vehicle, float(np.mean(list(values.values()))))
-
-
-def _names(published: Published, values: Mapping[str, float]) -> str:
-    """Cars of a mean; ambient temperatures behind a name are left out."""
-    del published
-    return ", ".join(dict.fromkeys(key.partition(" ")[0] for key in values))
 
 
 def _values(row: Row, results: Results) -> dict[str, float]:

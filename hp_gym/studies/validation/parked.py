@@ -30,7 +30,7 @@ def run(published: Published, experiment: ParkedExperiment, vehicle: str, folder
     """
     duration_s = round(60.0 * experiment.minutes)
     trace = traces.write(folder / f"parked-{duration_s}.csv", traces.constant(0.0, duration_s))
-    changes = _changes(published, experiment, vehicle, trace)
+    changes = _changes(experiment, vehicle, trace)
     loaded = _core.Experiment(published.scenario, published.controller, assignments(changes), vehicle=vehicle)
     rows = _off(loaded) if experiment.off else loaded.simulate()[0][1:]
     signals = dict(zip(loaded.signal_names, rows.T, strict=True))
@@ -51,7 +51,7 @@ def run(published: Published, experiment: ParkedExperiment, vehicle: str, folder
     }
 
 
-def _changes(published: Published, experiment: ParkedExperiment, vehicle: str, trace: Path) -> dict[str, Any]:
+def _changes(experiment: ParkedExperiment, vehicle: str, trace: Path) -> dict[str, Any]:
     changes = settings.climate(
         experiment.ambient_degc, experiment.relative_humidity, experiment.solar_gain_w, occupants=0
     )

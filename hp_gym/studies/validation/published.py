@@ -102,7 +102,7 @@ class TripExperiment(BaseModel):
         until_empty: Whether they are repeated until the battery is empty.
         cruise_km_h: Constant speed instead of cycles, for `minutes`.
         climate: `auto`, `heat` (never cools), or `off`.
-        dynamometer: Whether the road load is that of 24 degC whatever the air is: no denser air, no colder tyres.
+        dynamometer: Whether the road load is that of 24 degC: no denser air, no colder tyres.
         initial: Further temperatures at the start.
     """
 
@@ -267,7 +267,7 @@ class Published(BaseModel):
             before = names[: names.index(experiment.name)]
             if experiment.displacement_of is not None and experiment.displacement_of not in before:
                 raise ValueError(
-                    f"experiment `{experiment.name}` takes its displacement of `{experiment.displacement_of}`, "
+                    f"experiment `{experiment.name}` takes the displacement of `{experiment.displacement_of}`, "
                     "which must be an experiment above it"
                 )
         elif isinstance(experiment, ParkedExperiment | TripExperiment):

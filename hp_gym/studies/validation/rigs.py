@@ -1,4 +1,4 @@
-"""A vehicle as a rig: its room at a temperature, its compressor at a speed, one size set to a published capacity."""
+"""A vehicle as a rig: room at a temperature, compressor at a speed, one size set to a published capacity."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -128,7 +128,11 @@ def _drive(
     ranges = dict(zip(loaded.actuator_names, loaded.actuator_ranges(), strict=True))
     lowest_w, highest_w = ranges["compressor_power"]
     speed = loaded.signal_names.index("compressor_speed_rev_s")
-    air = {"ptc": "off", "blower_level": 1.0, "recirculation": experiment.recirculation}
+    air: dict[str, float | str] = {
+        "ptc": "off",
+        "blower_level": 1.0,
+        "recirculation": experiment.recirculation,
+    }
     power_w, rows = _FIRST_POWER_W, []
     for _ in range(experiment.duration_s):
         power_w = min(max(power_w, lowest_w), highest_w)

@@ -1,9 +1,11 @@
 """What rows of cars have in common: weather, what the rules may use, and heat requests that bind nothing."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 from hp_gym import _core, toml_files
+
+_SOURCES: Final = ("motor", "transmission", "front-end")
 
 
 def climate(
@@ -19,7 +21,7 @@ def climate(
 
 
 def used(vehicle: str, strategy: Mapping[str, bool | str]) -> dict[str, Any]:
-    """Changes of what the rules may use: all sources, no store, the battery for itself; nothing limits heat flows.
+    """Changes of what the rules may use: all sources, no store, battery isolated; nothing limits heat flows.
 
     Args:
         vehicle: Name or path of the car.

@@ -39,7 +39,7 @@ def cycle(name: str) -> list[float]:
 
 
 def repeated(names: Sequence[str], least_km: float) -> list[float]:
-    """Cycles one after the other, again and again until so many kilometres are driven; once where that is 0."""
+    """Cycles one after the other, again until so many kilometres are driven; once where that is 0."""
     once = [speed for name in names for speed in cycle(name)]
     length_km = sum(once) / 3600.0
     return once * max(1, round(least_km / length_km + 0.5))

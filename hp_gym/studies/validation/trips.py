@@ -108,7 +108,7 @@ def _changes(experiment: TripExperiment, vehicle: str, cycle: str, ambient_degc:
 
 
 def _fixed_road_load(vehicle: str, ambient_degc: float) -> dict[str, float]:
-    """Road load of a dynamometer: drag area less in proportion as the air is denser, tyres as in their test."""
+    """Road load of a dynamometer: drag area in inverse proportion to density, tyres as in their test."""
     density = _COAST_DOWN_K / (ambient_degc + _ZERO_CELSIUS_K)
     return {
         "body.drag_area_m2": settings.number(vehicle, "body", "drag_area_m2") / density,
@@ -133,7 +133,7 @@ def run(trips: Sequence[Trip], threads: int) -> dict[str, dict[str, Figures]]:
             raise ValidationFileError(f"experiment `{trip.experiment}`, {trip.key}: {refusal}")
         if trip.until_empty and end != EMPTY:
             raise ValidationFileError(
-                f"experiment `{trip.experiment}`, {trip.key}: ended with `{end}`, but must end with `{EMPTY}`"
+                f"experiment `{trip.experiment}`, {trip.key}: ended with `{end}`, but must with `{EMPTY}`"
             )
         known = {name: float(value) for name, value in zip(totals.names, values, strict=True)}
         vehicle = trip.planned[2] or ""

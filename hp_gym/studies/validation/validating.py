@@ -88,7 +88,7 @@ def drive(
 
 
 def sets_of_sources(vehicle: str) -> float:
-    """Number of sets, the empty one included, of members that can feed heat to a loop that an evaporator cools.
+    """Number of sets, an empty one included, of members that can heat a loop that an evaporator cools.
 
     The cabin is left out: it is what is heated.
     """

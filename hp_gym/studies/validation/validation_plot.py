@@ -27,9 +27,9 @@ _FURTHEST: Final = 3.0
 
 
 def plot(judged: Sequence[Judged], path: str | os.PathLike[str] | None) -> Figure:
-    """Draws each row as a bar from the least to the greatest value that passes, and the model's value as a point.
+    """Draws the model's value of each row, scaled so that what passes lies between -1 and 1.
 
-    Rows are scaled so that what passes lies between -1 and 1; of a bound alone the tolerance, or a fifth of the bound, is the scale.
+    Of a bound alone a fifth of it is the scale.
 
     Args:
         judged: The rows.
@@ -42,9 +42,10 @@ def plot(judged: Sequence[Judged], path: str | os.PathLike[str] | None) -> Figur
     suffix = "" if path is None else require_suffix(path, PICTURE_SUFFIXES)
     groups = [[row for row in judged if row.row.group == group] for group in GROUPS]
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(13.0, 1.0 + 0.2 * max(map(len, groups))), layout="constrained")
+        figure = Figure(figsize=(13.0, 1.3 + 0.2 * max(map(len, groups))), layout="constrained")
         for axes, title, rows in zip(figure.subplots(1, len(groups)), GROUPS.values(), groups, strict=True):
             _panel(axes, title, rows)
+        figure.suptitle("published | model; green band: what passes", x=0.01, ha="left", fontsize=9)
         if path is not None:
             with atomic_write(path) as temporary:
                 figure.savefig(temporary, format=suffix.removeprefix("."))
@@ -61,8 +62,8 @@ def _panel(axes: Axes, title: str, rows: Sequence[Judged]) -> None:
     axes.set_yticks(range(len(rows)), names, fontsize=7)
     axes.set_ylim(len(rows) - 0.3, -0.7)
     axes.set_xlim(-_FURTHEST - 0.2, _FURTHEST + 0.2)
-    axes.set_xticks([-1.0, 0.0, 1.0], ["least", "middle", "greatest"])
-    axes.set_title(f"{title}: published | model")
+    axes.set_xticks([-1.0, 1.0], ["least", "greatest"], fontsize=7.5)
+    axes.set_title(title)
 
 
 def scaled(row: Judged) -> float:
