@@ -7,16 +7,17 @@
 # ///
 """Compares the plant's battery with PyBaMM's Thevenin model: same tables, current and temperature.
 
-Both have one RC pair. PyBaMM integrates state of charge and the pair's voltage by itself (IDAKLU). It is given the
-current of a cell, constant over each second, the temperature at the second's beginning, and R0, R1, C1 and
-open-circuit voltage as the vehicle's file has them, scaled to its cell. Over a second the plant gives the mean
-voltage, so PyBaMM's is averaged too (Simpson, five points). Heat is that of the resistors; PyBaMM's own figure
-counts what the capacitor takes up as heat at once.
+Both have one RC pair. PyBaMM integrates state of charge and the pair's voltage by itself (IDAKLU). It is
+given a cell's current, constant over each second, the temperature at the second's beginning, and R0, R1,
+C1 and the open-circuit voltage of the vehicle's file, scaled to its cell. The plant gives the mean
+voltage of a second, so PyBaMM's is averaged too (Simpson, five points). Heat is that of the resistors;
+PyBaMM's own figure counts what the capacitor takes up as heat at once.
 
-One difference is of the model, not of its numbers. Where temperature or state of charge change C1, PyBaMM
-keeps the pair's voltage, so that energy comes from nowhere or is lost; the plant keeps the energy, as its ledger
-must close. The comparison adds that term to PyBaMM's pair. Without it, as PyBaMM is, a warm trip agrees as well
-(C1 changes by an eighth), a cold one does not: 7 mV and 1.4 % at 0 degC, 20 mV and 2.9 % at -20 degC.
+One difference is of the model, not of its numbers. Where temperature or state of charge change C1,
+PyBaMM keeps the pair's voltage, so that energy comes from nowhere or is lost; the plant keeps the
+energy, as its ledger must close. The comparison adds that term to PyBaMM's pair. Without it, as PyBaMM
+is, a warm trip agrees as well (C1 changes by an eighth), a cold one does not: 7 mV and 1.4 % at 0 degC,
+20 mV and 2.9 % at -20 degC.
 
     uv run scripts/check_battery.py
 """

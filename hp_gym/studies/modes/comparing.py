@@ -111,8 +111,8 @@ def compare(
 ) -> Compared:
     """Drives all modes of a vehicle at all ambient temperatures.
 
-    Connections of a mode hold for the whole trip; the plant still opens one whose heat would flow the wrong way.
-    The rules treat the battery, connect the cabin, switch between heating and cooling, and set all levels.
+    Connections hold for the whole trip; the plant still opens one whose heat would flow the wrong way. Rules
+    treat the battery, connect the cabin, switch between heating and cooling, and set all levels.
 
     Args:
         vehicle: Name or path.

@@ -52,8 +52,8 @@ class Mode:
 def modes(layout: Layout) -> list[Mode]:
     """Lists all feasible modes of a vehicle.
 
-    Feasible is what can move heat: with the heat pump there must be a source for heating or a sink for cooling;
-    else a heater. Members of loops without refrigerant (a radiator, what it cools) follow the rules.
+    Feasible is what can move heat: a heat pump with a source for heating or a sink for cooling, or a heater.
+    Members of loops without refrigerant (a radiator, what it cools) follow the rules.
 
     Args:
         layout: What the vehicle is made of.

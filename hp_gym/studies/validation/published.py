@@ -267,7 +267,7 @@ class Published(BaseModel):
             before = names[: names.index(experiment.name)]
             if experiment.displacement_of is not None and experiment.displacement_of not in before:
                 raise ValueError(
-                    f"experiment `{experiment.name}` takes the displacement of `{experiment.displacement_of}`, "
+                    f"experiment `{experiment.name}` has the displacement of `{experiment.displacement_of}`, "
                     "which must be an experiment above it"
                 )
         elif isinstance(experiment, ParkedExperiment | TripExperiment):

@@ -7,6 +7,8 @@ from rich.table import Table
 from hp_gym.studies.validation.judging import Judged
 from hp_gym.studies.validation.published import Published
 
+_MADE_BY = "Made by `hp-gym validate --markdown`. Setups are in `configs/validation/published.toml`."
+
 GROUPS = {"rig": "Rigs", "chamber": "Cars in a chamber", "car": "Cars on the road"}
 """Groups of rows and their titles, in the order in which they are shown."""
 
@@ -69,7 +71,7 @@ def explanations(judged: Iterable[Judged]) -> list[tuple[str, str]]:
 
 def markdown(published: Published, judged: Sequence[Judged]) -> str:
     """The rows as Markdown, with explanations and what is not judged."""
-    lines = [closing_lines(judged)[0], ""]
+    lines = ["# Published values beside the model", "", _MADE_BY, "", closing_lines(judged)[0], ""]
     for group, title in GROUPS.items():
         lines += [
             f"## {title}",
