@@ -33,13 +33,13 @@ def modes(
     """Drives all feasible modes of a vehicle over ambient temperatures, ranked by energy at comfort."""
     from hp_gym.files import require_suffix
     from hp_gym.overrides import assignments
-    from hp_gym.studies.modes import comparing, modes_report
+    from hp_gym.studies.heat_modes import comparing, modes_report
 
     began_s = perf_counter()
     try:
         if plot is not None:
             from hp_gym.pictures.plotting import PICTURE_SUFFIXES
-            from hp_gym.studies.modes import modes_plot
+            from hp_gym.studies.heat_modes import modes_plot
 
             require_suffix(plot, PICTURE_SUFFIXES)
         compared = comparing.compare(

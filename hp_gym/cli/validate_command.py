@@ -28,13 +28,13 @@ def validate(
 ) -> None:
     """Sets rigs, chamber tests and cars beside published values, by tolerances fixed before the first run."""
     from hp_gym.files import atomic_write, require_suffix
-    from hp_gym.studies.validation import validating, validation_report
+    from hp_gym.studies.published_values import validating, validation_report
 
     began_s = perf_counter()
     try:
         if plot is not None:
             from hp_gym.pictures.plotting import PICTURE_SUFFIXES
-            from hp_gym.studies.validation import validation_plot
+            from hp_gym.studies.published_values import validation_plot
 
             require_suffix(plot, PICTURE_SUFFIXES)
         if markdown is not None:

@@ -9,9 +9,9 @@ from typer.testing import CliRunner
 
 from hp_gym import Experiment, _core
 from hp_gym.cli.app import app
-from hp_gym.studies.modes import comparing
-from hp_gym.studies.modes.comparing import Compared, ModesError
-from hp_gym.studies.modes.enumeration import Mode, modes
+from hp_gym.studies.heat_modes import comparing
+from hp_gym.studies.heat_modes.comparing import Compared, ModesError
+from hp_gym.studies.heat_modes.enumeration import Mode, modes
 
 
 @pytest.fixture(scope="module")

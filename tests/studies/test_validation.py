@@ -11,9 +11,9 @@ import tomlkit
 from typer.testing import CliRunner
 
 from hp_gym.cli.app import app
-from hp_gym.studies.validation import parked, published, rigs, trips, validating, validation_plot
-from hp_gym.studies.validation.judging import judge
-from hp_gym.studies.validation.published import Published, RigExperiment, TripExperiment
+from hp_gym.studies.published_values import driven_cars, parked, published, rigs, validating, validation_plot
+from hp_gym.studies.published_values.judging import judge
+from hp_gym.studies.published_values.published import Published, RigExperiment, TripExperiment
 
 FILE = Path(__file__).parents[2] / "configs" / "validation" / "published.toml"
 ROWS = ("R4a", "R4b", "R7c", "C4a", "W5a", "V17c")
@@ -98,9 +98,9 @@ def test_a_dynamometer_has_one_road_load_in_all_weathers(loaded: Published, tmp_
         for name, ambient_degc, fixed in (("mild", 24.0, True), ("cold", -7.0, True), ("road", -7.0, False))
     ]
     planned = [
-        trip for experiment in several for trip in trips.plan(loaded, experiment, loaded.cars, tmp_path)
+        trip for experiment in several for trip in driven_cars.plan(loaded, experiment, loaded.cars, tmp_path)
     ]
-    found = {name: figures["compact_ev"] for name, figures in trips.run(planned, 2).items()}
+    found = {name: figures["compact_ev"] for name, figures in driven_cars.run(planned, 2).items()}
     for energy in ("drag_energy_kwh", "rolling_resistance_energy_kwh"):
         assert found["cold"][energy] == pytest.approx(found["mild"][energy], rel=2e-3)
         assert found["road"][energy] > 1.1 * found["mild"][energy]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 from hp_gym import extras
 from hp_gym.files import atomic_write, require_suffix
 from hp_gym.pictures.plotting import PICTURE_SUFFIXES, STYLE
-from hp_gym.studies.validation.validation_report import GROUPS, number
+from hp_gym.studies.published_values.validation_report import GROUPS, number
 
 with extras.needed("plot"):
     import matplotlib as mpl
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from hp_gym.studies.validation.judging import Judged
+    from hp_gym.studies.published_values.judging import Judged
 
 _GREEN: Final = "#3a7d44"
 _RED: Final = "#c1432e"

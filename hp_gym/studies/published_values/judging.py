@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from hp_gym.studies.validation.published import Published, Row
-from hp_gym.studies.validation.rigs import Figures
+from hp_gym.studies.published_values.published import Published, Row
+from hp_gym.studies.published_values.rigs import Figures
 
 Results = Mapping[str, Mapping[str, Figures]]
 """Figures by experiment and by car (or rig)."""

@@ -7,9 +7,9 @@ from tempfile import TemporaryDirectory
 
 from hp_gym import _core
 from hp_gym.studies import planned_runs
-from hp_gym.studies.validation import parked, published, rigs, trips
-from hp_gym.studies.validation.judging import Judged, judge
-from hp_gym.studies.validation.published import (
+from hp_gym.studies.published_values import driven_cars, parked, published, rigs
+from hp_gym.studies.published_values.judging import Judged, judge
+from hp_gym.studies.published_values.published import (
     LayoutExperiment,
     ParkedExperiment,
     Published,
@@ -17,7 +17,7 @@ from hp_gym.studies.validation.published import (
     TripExperiment,
     ValidationFileError,
 )
-from hp_gym.studies.validation.rigs import Figures
+from hp_gym.studies.published_values.rigs import Figures
 
 
 def validate(
@@ -67,7 +67,7 @@ def drive(
     """
     results: dict[str, dict[str, Figures]] = {}
     of_rigs: dict[str, Figures] = {}
-    planned: list[trips.Trip] = []
+    planned: list[driven_cars.Trip] = []
     for experiment in loaded.experiment:
         match experiment:
             case RigExperiment():
@@ -79,12 +79,12 @@ def drive(
                     car: parked.run(loaded, experiment, vehicles[car], folder) for car in experiment.cars
                 }
             case TripExperiment():
-                planned += trips.plan(loaded, experiment, vehicles, folder)
+                planned += driven_cars.plan(loaded, experiment, vehicles, folder)
             case LayoutExperiment():
                 results[experiment.name] = {
                     experiment.vehicle: {"sets_of_sources": sets_of_sources(experiment.vehicle)}
                 }
-    return results | trips.run(planned, threads)
+    return results | driven_cars.run(planned, threads)
 
 
 def sets_of_sources(vehicle: str) -> float:

@@ -8,8 +8,8 @@ import numpy as np
 
 from hp_gym import _core
 from hp_gym.overrides import assignments
-from hp_gym.studies.validation import traces
-from hp_gym.studies.validation.published import Published, Rig, RigExperiment
+from hp_gym.studies.published_values import speed_traces
+from hp_gym.studies.published_values.published import Published, Rig, RigExperiment
 
 FRONT_AIR_SPEED_KM_H: Final = 72.0
 """With a ram air share of 0.2 it is 4 m/s at the front-end exchanger."""
@@ -39,8 +39,8 @@ def run(
         Its figures; NaN throughout where the compressor does not reach the speed.
     """
     rig = published.rig[experiment.rig]
-    trace = traces.write(
-        folder / f"{experiment.name}.csv", traces.constant(FRONT_AIR_SPEED_KM_H, experiment.duration_s)
+    trace = speed_traces.write(
+        folder / f"{experiment.name}.csv", speed_traces.constant(FRONT_AIR_SPEED_KM_H, experiment.duration_s)
     )
     changes = _changes(published, rig, experiment, trace)
     if experiment.displacement_of is not None:

@@ -11,9 +11,9 @@ from hp_gym import _core
 from hp_gym.overrides import assignments
 from hp_gym.studies import planned_runs
 from hp_gym.studies.planned_runs import REFUSED, Planned
-from hp_gym.studies.validation import settings, traces
-from hp_gym.studies.validation.published import Published, TripExperiment, ValidationFileError
-from hp_gym.studies.validation.rigs import Figures
+from hp_gym.studies.published_values import car_settings, speed_traces
+from hp_gym.studies.published_values.published import Published, TripExperiment, ValidationFileError
+from hp_gym.studies.published_values.rigs import Figures
 
 EMPTY: Final = "battery_empty"
 """How a trip ends that is driven until nothing is left."""
@@ -81,13 +81,15 @@ def plan(
 
 def _cycle(experiment: TripExperiment, folder: Path) -> str:
     if experiment.cruise_km_h is not None:
-        speeds = traces.constant(experiment.cruise_km_h, round(60.0 * (experiment.minutes or 0.0)))
-        return str(traces.write(folder / f"{experiment.name}.csv", speeds))
+        speeds = speed_traces.constant(experiment.cruise_km_h, round(60.0 * (experiment.minutes or 0.0)))
+        return str(speed_traces.write(folder / f"{experiment.name}.csv", speeds))
     if len(experiment.cycles) == 1 and not experiment.until_empty:
         return experiment.cycles[0]
     path = folder / f"{'-'.join(experiment.cycles)}-{experiment.until_empty}.csv"
     if not path.exists():
-        traces.write(path, traces.repeated(experiment.cycles, LONGEST_KM if experiment.until_empty else 0.0))
+        speed_traces.write(
+            path, speed_traces.repeated(experiment.cycles, LONGEST_KM if experiment.until_empty else 0.0)
+        )
     return str(path)
 
 
@@ -98,8 +100,8 @@ def _changes(experiment: TripExperiment, vehicle: str, cycle: str, ambient_degc:
         strategy |= _OFF
     road_load = _fixed_road_load(vehicle, ambient_degc) if experiment.dynamometer else {}
     return {
-        **settings.climate(ambient_degc, 0.8 if ambient_degc < 25.0 else 0.4, 0.0, occupants=1),
-        **settings.used(vehicle, strategy),
+        **car_settings.climate(ambient_degc, 0.8 if ambient_degc < 25.0 else 0.4, 0.0, occupants=1),
+        **car_settings.used(vehicle, strategy),
         "scenario.cycle": cycle,
         "scenario.initial.state_of_charge_pct": 100.0,
         **{f"scenario.initial.{key}": value for key, value in experiment.initial.items()},
@@ -111,7 +113,7 @@ def _fixed_road_load(vehicle: str, ambient_degc: float) -> dict[str, float]:
     """Road load of a dynamometer: drag area in inverse proportion to density, tyres as in their test."""
     density = _COAST_DOWN_K / (ambient_degc + _ZERO_CELSIUS_K)
     return {
-        "body.drag_area_m2": settings.number(vehicle, "body", "drag_area_m2") / density,
+        "body.drag_area_m2": car_settings.number(vehicle, "body", "drag_area_m2") / density,
         "body.rolling_resistance_rise_per_k": 0.0,
     }
 

@@ -4,8 +4,8 @@ from collections.abc import Iterable, Sequence
 
 from rich.table import Table
 
-from hp_gym.studies.validation.judging import Judged
-from hp_gym.studies.validation.published import Published
+from hp_gym.studies.published_values.judging import Judged
+from hp_gym.studies.published_values.published import Published
 
 _MADE_BY = "Made by `hp-gym validate --markdown`. Setups are in `configs/validation/published.toml`."
 

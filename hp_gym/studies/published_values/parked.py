@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from hp_gym import _core
 from hp_gym.overrides import assignments
-from hp_gym.studies.validation import settings, traces
-from hp_gym.studies.validation.published import ParkedExperiment, Published
-from hp_gym.studies.validation.rigs import Figures
+from hp_gym.studies.published_values import car_settings, speed_traces
+from hp_gym.studies.published_values.published import ParkedExperiment, Published
+from hp_gym.studies.published_values.rigs import Figures
 
 AIR_J_KG_K: Final = 1006.0
 """Specific heat of air, the plant's."""
@@ -29,7 +29,7 @@ def run(published: Published, experiment: ParkedExperiment, vehicle: str, folder
         folder: For the trace.
     """
     duration_s = round(60.0 * experiment.minutes)
-    trace = traces.write(folder / f"parked-{duration_s}.csv", traces.constant(0.0, duration_s))
+    trace = speed_traces.write(folder / f"parked-{duration_s}.csv", speed_traces.constant(0.0, duration_s))
     changes = _changes(experiment, vehicle, trace)
     loaded = _core.Experiment(published.scenario, published.controller, assignments(changes), vehicle=vehicle)
     rows = _off(loaded) if experiment.off else loaded.simulate()[0][1:]
@@ -52,10 +52,10 @@ def run(published: Published, experiment: ParkedExperiment, vehicle: str, folder
 
 
 def _changes(experiment: ParkedExperiment, vehicle: str, trace: Path) -> dict[str, Any]:
-    changes = settings.climate(
+    changes = car_settings.climate(
         experiment.ambient_degc, experiment.relative_humidity, experiment.solar_gain_w, occupants=0
     )
-    changes |= settings.used(vehicle, experiment.strategy)
+    changes |= car_settings.used(vehicle, experiment.strategy)
     changes |= {
         "scenario.cycle": str(trace),
         "scenario.initial.state_of_charge_pct": 80.0,

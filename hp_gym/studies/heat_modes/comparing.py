@@ -12,7 +12,7 @@ from hp_gym.messages import OneLineError
 from hp_gym.overrides import Overrides, assignments
 from hp_gym.studies import planned_runs
 from hp_gym.studies.axes import parse_axis
-from hp_gym.studies.modes.enumeration import Mode, modes
+from hp_gym.studies.heat_modes.enumeration import Mode, modes
 
 AMBIENTS_DEGC: Final = tuple(float(f"{value:.4g}") for value in np.linspace(-20.0, 40.0, 15))
 """Fifteen, evenly from -20 to 40 degC."""

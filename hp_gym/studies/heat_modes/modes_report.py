@@ -2,7 +2,7 @@
 
 from rich.table import Table
 
-from hp_gym.studies.modes.comparing import COMFORT_K, Compared
+from hp_gym.studies.heat_modes.comparing import COMFORT_K, Compared
 
 _HEADINGS = ("Ambient", "Energy", "Discomfort", "Comfortable", "PTC alone")
 

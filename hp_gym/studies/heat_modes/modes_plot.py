@@ -17,7 +17,7 @@ with extras.needed("plot"):
 if TYPE_CHECKING:
     import os
 
-    from hp_gym.studies.modes.comparing import Compared
+    from hp_gym.studies.heat_modes.comparing import Compared
 
 MOST_ROWS: Final = 32
 """Modes that are drawn, the best overall."""
