@@ -8,6 +8,7 @@ from hp_gym.cli import interrupts
 from hp_gym.cli.benchmark_command import benchmark
 from hp_gym.cli.calibrate_command import calibrate
 from hp_gym.cli.export_command import export
+from hp_gym.cli.modes_command import modes
 from hp_gym.cli.optimise_command import optimise
 from hp_gym.cli.output import one_line_for_missing_packages
 from hp_gym.cli.record_command import record
@@ -18,6 +19,7 @@ from hp_gym.cli.speed_command import speed
 from hp_gym.cli.sweep_command import sweep
 from hp_gym.cli.train_command import train
 from hp_gym.cli.tune_command import tune
+from hp_gym.cli.validate_command import validate
 from hp_gym.cli.vehicle_command import vehicle
 from hp_gym.ctrl_c import hook
 
@@ -34,6 +36,7 @@ for command, kept in (
     (scenarios, ""),
     (vehicle, ""),
     (reproduce, _AS_BEFORE),
+    (validate, _AS_BEFORE),
     (calibrate, _AS_BEFORE),
     (sweep, "runs so far are kept, and the same command goes on with them"),
     (optimise, "trials so far are kept, and the same command goes on with them"),
@@ -41,6 +44,7 @@ for command, kept in (
     (train, "nothing was written"),
     (export, _AS_BEFORE),
     (record, _AS_BEFORE),
+    (modes, _AS_BEFORE),
     (speed, ""),
 ):
     app.command()(interrupts.stoppable(one_line_for_missing_packages(command), kept))

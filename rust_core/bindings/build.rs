@@ -11,6 +11,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     embed_configs(&[
         Folder { constant: "CALIBRATIONS", folder: "calibration", ending: "toml" },
         Folder { constant: "BENCHMARKS", folder: "benchmark", ending: "toml" },
+        Folder { constant: "VALIDATIONS", folder: "validation", ending: "toml" },
         Folder { constant: "TRAININGS", folder: "agents", ending: "toml" },
     ])?;
     let root = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?).join("../..").canonicalize()?;

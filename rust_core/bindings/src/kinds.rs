@@ -14,6 +14,10 @@ pub const CALIBRATION: Kind =
 pub const BENCHMARK: Kind =
     Kind { word: "benchmark", ending: "toml", files: embedded::BENCHMARKS, references: &[] };
 
+/// Published values and how the model is set beside them: `validation/*.toml`.
+pub const VALIDATION: Kind =
+    Kind { word: "validation", ending: "toml", files: embedded::VALIDATIONS, references: &[] };
+
 /// A training: `agents/*.toml`.
 pub const TRAINING: Kind =
     Kind { word: "training configuration", ending: "toml", files: embedded::TRAININGS, references: &[] };

@@ -52,7 +52,7 @@ mod _core {
     use super::errors::{ConfigurationError, InternalError, StateError};
     #[pymodule_export]
     use super::experiment::{Experiment, Run, plant_step_seconds, totals};
-    use super::kinds::{BENCHMARK, CALIBRATION, TRAINING};
+    use super::kinds::{BENCHMARK, CALIBRATION, TRAINING, VALIDATION};
     #[pymodule_export]
     use super::sweep::summaries_of;
     #[pymodule_export]
@@ -76,7 +76,7 @@ mod _core {
     }
 
     /// Every kind of configuration.
-    const KINDS: [Kind; 11] = [
+    const KINDS: [Kind; 12] = [
         VEHICLE,
         ARCHITECTURE,
         CONTROLLER,
@@ -88,6 +88,7 @@ mod _core {
         REWARD,
         BENCHMARK,
         TRAINING,
+        VALIDATION,
     ];
 
     fn kind(word: &str) -> PyResult<Kind> {
