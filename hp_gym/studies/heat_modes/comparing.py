@@ -150,7 +150,13 @@ def compare(
     shape = len(found), len(ambients_degc)
     energy_kwh, discomfort_k = _drive(planned, shape, threads or planned_runs.processors())
     return Compared(
-        name, os.fspath(cycle), rules, tuple(ambients_degc), tuple(found), energy_kwh, discomfort_k
+        name,
+        os.fspath(cycle),
+        os.fspath(controller),
+        tuple(ambients_degc),
+        tuple(found),
+        energy_kwh,
+        discomfort_k,
     )
 
 
