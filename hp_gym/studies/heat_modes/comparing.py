@@ -147,7 +147,28 @@ def compare(
         for mode in found
         for ambient in ambients_degc
     ]
-    totals = planned_runs.drive(planned, threads or planned_runs.processors())
+    shape = len(found), len(ambients_degc)
+    energy_kwh, discomfort_k = _drive(planned, shape, threads or planned_runs.processors())
+    return Compared(
+        name,
+        os.fspath(cycle),
+        os.fspath(controller),
+        tuple(ambients_degc),
+        tuple(found),
+        energy_kwh,
+        discomfort_k,
+    )
+
+
+def _drive(
+    planned: list[planned_runs.Planned], shape: tuple[int, int], threads: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Energy [kWh] and discomfort [K], a row a mode; NaN where a trip does not arrive.
+
+    Raises:
+        ModesError: The plant refuses a run.
+    """
+    totals = planned_runs.drive(planned, threads)
     refusal = next((reason for reason in totals.refusals if reason is not None), None)
     if refusal is not None:
         raise ModesError(refusal)
@@ -155,17 +176,9 @@ def compare(
 
     def table(total: str) -> NDArray[np.float64]:
         values = np.where(arrived, totals.values[:, totals.names.index(total)], np.nan)
-        return values.reshape(len(found), len(ambients_degc))
+        return values.reshape(shape)
 
-    return Compared(
-        name,
-        os.fspath(cycle),
-        os.fspath(controller),
-        tuple(ambients_degc),
-        tuple(found),
-        table("energy_kwh"),
-        table("discomfort_k"),
-    )
+    return table("energy_kwh"), table("discomfort_k")
 
 
 def ambients(text: str) -> tuple[float, ...]:
