@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::io::Write as _;
 
 /// Files that have no options.
-const PLAIN: [&str; 4] = ["hpcu", "hpcu-tuned", "hpcu-best-mode", "thermostat"];
+const PLAIN: [&str; 3] = ["hpcu", "hpcu-best-mode", "thermostat"];
 
 fn load(rules: &str, changes: &[String]) -> Experiment {
     let changes: Vec<Override> =
