@@ -1,7 +1,7 @@
 """TOML within bounds: how large a file may be and how deep its tables."""
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -102,6 +102,28 @@ def chain(kind: str, name: str) -> Iterator[tuple[str, dict[str, Any]]]:
         file = _beside(kind, file, base)
     message = f"{name}: the chain of `base` files is too long or closed"
     raise FileError(message)
+
+
+def merged(kind: str, name: str) -> dict[str, Any]:
+    """Returns all values of a file, those of its bases included; where both have a value, the file's.
+
+    Raises:
+        FileError: A file is not right, or the chain is too long or closed.
+        ConfigurationError: There is no such file.
+        OSError: A file cannot be read.
+    """
+    values: dict[str, Any] = {}
+    for _, tables in reversed(list(chain(kind, name))):
+        values = _over(values, tables)
+    return values
+
+
+def _over(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
+    both = dict(below)
+    for key, value in above.items():
+        old = both.get(key)
+        both[key] = _over(old, value) if isinstance(old, dict) and isinstance(value, dict) else value
+    return both
 
 
 def _beside(kind: str, file: str, base: str) -> str:

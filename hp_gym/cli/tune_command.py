@@ -14,26 +14,36 @@ if TYPE_CHECKING:
 
 
 def tune(
+    rules: Annotated[
+        list[str] | None, typer.Argument(help="hpcu-tuned, thermostat-tuned; all where none is named.")
+    ] = None,
     *,
-    out: Annotated[Path, typer.Option(help="Folder for the two controller files.")] = Path("out/tune"),
-    trials: Annotated[int, typer.Option(min=10, help="Trials of the search in each ambient band.")] = 160,
+    out: Annotated[Path, typer.Option(help="Folder for the controller files.")] = Path("out/tune"),
+    trials: Annotated[int, typer.Option(min=10, help="Trials of each search in each ambient band.")] = 160,
     trips: Annotated[int, typer.Option(min=1, help="Training trips in each ambient band.")] = 128,
     seed: Annotated[int, typer.Option(min=0, help="Seed of trips and search.")] = 0,
     overrides: many_runs.Overrides = None,
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
-    """Chooses modes, and modes with set points, for each ambient band on training trips."""
+    """Chooses modes, and modes with numbers, of rules for each ambient band on training trips."""
     from hp_gym.overrides import assignments
-    from hp_gym.studies.tuning import tuned_rules
+    from hp_gym.studies.tuning import rule_families, search, tuned_rules
 
-    how = f"hp-gym tune --trials {trials} --trips {trips} --seed {seed}"
-    how += f" --overrides {overrides}" if overrides else ""
+    words = ["hp-gym tune", *(rules or []), f"--trials {trials} --trips {trips} --seed {seed}"]
+    words += [f"--overrides {overrides}"] if overrides else []
     try:
-        best, tuned = tuned_rules.tune(out, trials, trips, seed, how, overrides=assignments(overrides))
+        families = [rule_families.family(name) for name in dict.fromkeys(rules or rule_families.FAMILIES)]
+        found = tuned_rules.tune(
+            out,
+            families,
+            search.Effort(trials, trips, seed),
+            " ".join(words),
+            overrides=assignments(overrides),
+        )
     except (ValueError, OSError) as error:
         fail(error)
     if json:
-        print_json({"best_mode": _rows(best), "tuned": _rows(tuned)})
+        print_json({name.replace("-", "_"): _rows(results) for name, results in found.items()})
         return
     from rich.table import Table
 
@@ -44,12 +54,14 @@ def tune(
         title="Points a training trip, less what a lack of comfort costs",
         title_justify="left",
     )
-    for heading in ("Ambient", "paper's rules", "best mode", "tuned"):
+    for heading in ("Ambient", "paper's rules", *found):
         table.add_column(heading, justify="right", no_wrap=True)
-    for (band, mode), (_, result) in zip(best, tuned, strict=True):
-        table.add_row(band.title, f"{mode.paper_score:.2f}", f"{mode.score:.2f}", f"{result.score:.2f}")
+    for in_band in zip(*found.values(), strict=True):
+        band, first = in_band[0]
+        scores = (f"{result.score:.2f}" for _, result in in_band)
+        table.add_row(band.title, f"{first.paper_score:.2f}", *scores)
     console.print(table)
-    console.print(f"Written: {out / 'hpcu-best-mode.toml'}, {out / 'hpcu-tuned.toml'}", soft_wrap=True)
+    console.print(f"Written: {', '.join(str(out / f'{name}.toml') for name in found)}", soft_wrap=True)
 
 
 def _rows(results: list[tuple["Band", "Result"]]) -> list[dict[str, object]]:
@@ -60,7 +72,8 @@ def _rows(results: list[tuple["Band", "Result"]]) -> list[dict[str, object]]:
             "score": result.score,
             "paper_score": result.paper_score,
             "trials": result.trials,
-            "choices": dict(result.choices),
+            "base": result.choices.base,
+            "choices": dict(result.choices.values),
         }
         for band, result in results
     ]

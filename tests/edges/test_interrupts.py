@@ -229,7 +229,9 @@ def test_a_search_that_was_stopped_goes_on_and_ends_as_one_that_was_not(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tuned_rules, "BANDS", ambient_bands.BANDS[:1])
-    monkeypatch.setattr(search, "modes", lambda: [search.PAPER, {**search.PAPER, "strategy.ptc": False}])
+    monkeypatch.setattr(
+        search, "modes", lambda: [search.PAPER, search.PAPER.changed({"strategy.ptc": False})]
+    )
     driven: list[object] = []
     original = Objective._drive
 
@@ -239,7 +241,7 @@ def test_a_search_that_was_stopped_goes_on_and_ends_as_one_that_was_not(
             raise KeyboardInterrupt
         return original(self, choices)
 
-    words = ("tune", "--trials", 12, "--trips", 1)
+    words = ("tune", "hpcu-tuned", "--trials", 12, "--trips", 1)
     assert invoke(*words, "--out", tmp_path / "whole").exit_code == 0
     (tmp_path / "cut").mkdir()
     (tmp_path / "cut" / "hpcu-tuned.toml").write_text("earlier")

@@ -10,11 +10,13 @@ import pytest
 import hp_gym
 from hp_gym import _core
 from hp_gym.agents.training import configuration
+from hp_gym.studies.optimise import search_loop
 from hp_gym.studies.tuning import objective as goals
-from hp_gym.studies.tuning import rule_choices, search
+from hp_gym.studies.tuning import rule_choices, rule_families, search
 from hp_gym.studies.tuning.ambient_bands import BANDS, Band
 from hp_gym.studies.tuning.kept_trials import KeptTrials
 from hp_gym.studies.tuning.objective import objective
+from hp_gym.studies.tuning.rule_families import RuleFamily
 
 
 def test_papers_choices_in_every_band_drive_as_the_papers_controller(tmp_path: Path) -> None:
@@ -33,7 +35,7 @@ def test_band_of_the_ambient_temperature_decides(tmp_path: Path) -> None:
     rule_choices.write(
         file,
         "Two bands.",
-        [(cold, {**rule_choices.PAPER, "strategy.ptc": False}), (warm, rule_choices.PAPER)],
+        [(cold, rule_choices.PAPER.changed({"strategy.ptc": False})), (warm, rule_choices.PAPER)],
     )
     ptc_kwh = {
         degc: hp_gym.simulate(
@@ -45,20 +47,40 @@ def test_band_of_the_ambient_temperature_decides(tmp_path: Path) -> None:
     assert ptc_kwh[5.0] > 0.1
 
 
-def test_search_repeats_with_its_seed_and_never_falls_behind_where_it_starts() -> None:
+@pytest.mark.parametrize("family", rule_families.FAMILIES.values(), ids=rule_families.FAMILIES)
+def test_search_repeats_with_its_seed_and_never_falls_behind_where_it_starts(family: RuleFamily) -> None:
     band = Band(0, 10)
     with objective(band, 4, 0) as goal:
-        found = [search.tuned(goal, rule_choices.PAPER, 12, 5, lambda: None) for _ in range(2)]
+        found = [
+            search.tuned(goal, family, rule_choices.PAPER, search.Effort(12, 4, 5), lambda: None)
+            for _ in range(2)
+        ]
         assert found[0] == found[1]
-        assert found[0].score >= found[0].paper_score
+        assert found[0].score >= goal.score(family.start(band))
         assert goal.score(found[0].choices) == found[0].score
+
+
+@pytest.mark.parametrize("family", rule_families.FAMILIES.values(), ids=rule_families.FAMILIES)
+@pytest.mark.parametrize("band", BANDS, ids=lambda band: band.title)
+def test_a_search_starts_at_rules_that_it_can_draw(family: RuleFamily, band: Band) -> None:
+    assert search_loop.as_drawn(family.axes_in(band), family.start(band).values) is not None
+
+
+def test_rules_where_a_search_starts_drive_as_their_file_does(tmp_path: Path) -> None:
+    file = tmp_path / "start.toml"
+    rule_choices.write(file, "Untouched.", [(band, rule_families.HPCU.start(band)) for band in BANDS])
+    changes = ["scenario.strategy.battery=isolate"]
+    ours = hp_gym.simulate("ours/commute-minus5", str(file), changes)
+    theirs = hp_gym.simulate("ours/commute-minus5", "hpcu-modern", changes)
+    assert ours.summary == pytest.approx(theirs.summary, rel=0.0, nan_ok=True)
 
 
 @pytest.mark.parametrize("name", ["hpcu-best-mode", "hpcu-tuned"])
 def test_shipped_rules_are_no_worse_than_the_papers_on_training_trips_of_other_seeds(name: str) -> None:
-    rows = tomllib.loads(_core.config_text("controller", name))["ambient_bands"]
-    for band, row in zip(BANDS, rows, strict=True):
-        choices = dict(_flat("", {key: row[key] for key in ("strategy", "controller")}))
+    tables = tomllib.loads(_core.config_text("controller", name))
+    for band, row in zip(BANDS, tables["ambient_bands"], strict=True):
+        values = dict(_flat("", {key: row[key] for key in ("strategy", "controller") if key in row}))
+        choices = rule_choices.Choices(tables["base"], values)
         with objective(band, 64, 50_000) as goal:
             assert goal.score(choices) >= goal.score(rule_choices.PAPER)
 
@@ -80,7 +102,7 @@ def test_rules_are_held_to_the_comfort_that_policies_are_held_to() -> None:
 
 def test_trials_are_kept_for_the_same_command_and_car_only(tmp_path: Path) -> None:
     out, band = tmp_path / "out", BANDS[1]
-    other = {**rule_choices.PAPER, "controller.htc_set_point_degc": 47.123456789012345}
+    other = rule_families.HPCU.start(band).changed({"controller.htc_set_point_degc": 47.123456789012345})
     kept = KeptTrials(out, "tune")
     assert not kept
     kept.add(band, other, (-1.0 / 3.0, 0.1))

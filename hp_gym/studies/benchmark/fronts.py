@@ -61,7 +61,7 @@ def settings(front: Front, folder: Path) -> list[Setting]:
         OSError: The folder cannot be written to.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    values = _values(front.family)
+    values = toml_files.merged("controller", front.family)
     # A path in a file counts from that file's folder.
     base = front.family if front.family in _core.names("controller") else str(Path(front.family).resolve())
     made = []
@@ -76,22 +76,6 @@ def settings(front: Front, folder: Path) -> list[Setting]:
             temporary.write_text(tomlkit.dumps({"base": base, **changed}), encoding="utf-8")
         made.append(Setting(front.family, offsets_k, rules(name, path)))
     return made
-
-
-def _values(name: str) -> dict[str, Any]:
-    """All values of a controller file, those of its bases included."""
-    values: dict[str, Any] = {}
-    for _, tables in reversed(list(toml_files.chain("controller", name))):
-        values = _merged(values, tables)
-    return values
-
-
-def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
-    both = dict(below)
-    for key, value in above.items():
-        old = both.get(key)
-        both[key] = _merged(old, value) if isinstance(old, dict) and isinstance(value, dict) else value
-    return both
 
 
 def _moved(value: Any, offsets: Mapping[str, tuple[float, tuple[float, float]]]) -> Any:

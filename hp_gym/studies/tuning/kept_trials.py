@@ -13,7 +13,8 @@ from hp_gym.files import OURS
 from hp_gym.studies.axes import Axis
 from hp_gym.studies.optimise import search_loop, trial_store
 from hp_gym.studies.tuning.ambient_bands import BANDS, Band
-from hp_gym.studies.tuning.rule_choices import AXES, COOLING_AXES, Choices
+from hp_gym.studies.tuning.rule_choices import Choices
+from hp_gym.studies.tuning.rule_families import FAMILIES
 
 Outcome: TypeAlias = tuple[float, float]
 """Mean score of a trip, and mean discomfort [K]."""
@@ -76,12 +77,13 @@ class KeptTrials:
 
 
 def _axes(choices: Choices) -> list[Axis]:
-    """Those that choices are of: the paper's rules have fewer than the modern ones."""
-    return [axis for axis in AXES + COOLING_AXES if axis.keys[0] in choices]
+    """Those that choices are of; families that share a key share its axis."""
+    axes = {axis.name: axis for family in FAMILIES.values() for axis in (*family.axes, *family.cooled_axes)}
+    return [axis for axis in axes.values() if axis.keys[0] in choices.values]
 
 
 def _drawn(band: Band, choices: Choices) -> dict[str, float | int]:
-    return {"band": BANDS.index(band), **(search_loop.as_drawn(_axes(choices), choices) or {})}
+    return {"band": BANDS.index(band), **(search_loop.as_drawn(_axes(choices), choices.values) or {})}
 
 
 def _key(params: Mapping[str, float | int]) -> str:

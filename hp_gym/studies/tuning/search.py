@@ -7,20 +7,26 @@ from itertools import product
 from hp_gym.studies.axes import Axis
 from hp_gym.studies.optimise import search_loop
 from hp_gym.studies.tuning.objective import Objective
-from hp_gym.studies.tuning.rule_choices import (
-    AXES,
-    BATTERY,
-    COOLED_ABOVE_DEGC,
-    COOLING,
-    COOLING_AXES,
-    MODERN,
-    PAPER,
-    SWITCHES,
-    Choices,
-)
+from hp_gym.studies.tuning.rule_choices import PAPER, Choices
+from hp_gym.studies.tuning.rule_families import BATTERY, SWITCHES, RuleFamily
 
 Advance = Callable[[], None]
 """Called after each trial."""
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How much is searched.
+
+    Attributes:
+        trials: Evaluations of each search in each band.
+        trips: Training trips of an evaluation.
+        seed: Seed of trips and search.
+    """
+
+    trials: int
+    trips: int
+    seed: int
 
 
 @dataclass(frozen=True)
@@ -47,7 +53,7 @@ def modes() -> list[Choices]:
     axes = (BATTERY, ptc, ambient, drive_train)
     combinations = product(*(axis.probes() for axis in axes))
     return [
-        {**PAPER, **{key: value for axis, value in zip(axes, values, strict=True) for key in axis.keys}}
+        PAPER.changed({key: value for axis, value in zip(axes, values, strict=True) for key in axis.keys})
         for values in combinations
     ]
 
@@ -62,29 +68,29 @@ def best_mode(objective: Objective, advance: Advance) -> Result:
     return Result(modes()[best], scores[best], scores[0], len(scores))
 
 
-def tuned(objective: Objective, start: Choices, trials: int, seed: int, advance: Advance) -> Result:
+def tuned(
+    objective: Objective, family: RuleFamily, modes: Choices, effort: Effort, advance: Advance
+) -> Result:
     """Searches modes, set points and thresholds with Optuna's multivariate TPE, one trial after the other.
 
     Args:
         objective: What to make large.
-        start: Best modes, tried third: after the modern rules as they are and with the battery heated.
-        trials: Number of evaluations.
-        seed: Seed of the sampler.
+        family: Rules, and what of them is searched.
+        modes: Best modes, tried third: after the rules as they are, and those with the battery heated.
+        effort: Number of evaluations, and seed of the sampler.
         advance: Called after each trial.
     """
-    cooled = objective.band.high_degc > COOLED_ABOVE_DEGC
-    axes = AXES + COOLING_AXES if cooled else AXES
-    modern = {**MODERN, **(COOLING if cooled else {})}
-    best_modes = {key: value for key, value in start.items() if key.startswith("strategy.")}
-    study = search_loop.of_one_process(seed, max(10, trials // 8))
-    for known in ({}, {"strategy.battery": "heat"}, best_modes):
-        study.enqueue_trial(search_loop.as_drawn(axes, {**modern, **known}) or {})
+    axes, start = family.axes_in(objective.band), family.start(objective.band)
+    study = search_loop.of_one_process(effort.seed, max(10, effort.trials // 8))
+    for known in (start.values, {"strategy.battery": "heat"}, modes.values):
+        values = {**start.values, **{key: value for key, value in known.items() if key in start.values}}
+        study.enqueue_trial(search_loop.as_drawn(axes, values) or {}, skip_if_exists=True)
     search_loop.search(
         study,
         axes,
-        lambda batch: [search_loop.Outcome([objective.score(choices)]) for choices in batch],
-        trials,
+        lambda batch: [search_loop.Outcome([objective.score(start.changed(drawn))]) for drawn in batch],
+        effort.trials,
         seen=lambda _: advance(),
     )
-    choices = search_loop.changes(axes, study.best_params)
+    choices = start.changed(search_loop.changes(axes, study.best_params))
     return Result(choices, study.best_value, objective.score(PAPER), len(study.trials))

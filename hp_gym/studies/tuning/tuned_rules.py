@@ -1,4 +1,4 @@
-"""What `hp-gym tune` does, without the terminal: both searches in all bands, and their files."""
+"""What `hp-gym tune` does, without the terminal: the searches in all bands, and their files."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,35 +10,40 @@ from hp_gym.studies.tuning import rule_choices, search
 from hp_gym.studies.tuning.ambient_bands import BANDS, Band
 from hp_gym.studies.tuning.kept_trials import KeptTrials
 from hp_gym.studies.tuning.objective import objective
+from hp_gym.studies.tuning.rule_families import RuleFamily
 from hp_gym.terminal import progress_console
 from hp_gym.transactions import new_contents
 
 Found: TypeAlias = list[tuple[Band, search.Result]]
 """What a search found in each band."""
 
-_FILES: Final = (
-    ("hpcu-best-mode", "Best fixed modes of the HPCU in each ambient band, the paper's set points"),
-    ("hpcu-tuned", "HPCU with modes, set points and thresholds tuned in each ambient band"),
-)
+BEST_MODE: Final = "hpcu-best-mode"
+"""Rules that all searches begin with."""
+
+_BEST_MODE_IS: Final = "Best fixed modes of the HPCU in each ambient band, the paper's set points"
 
 
 def tune(
-    out: Path, trials: int, trips: int, seed: int, command: str, *, overrides: Sequence[str] = ()
-) -> tuple[Found, Found]:
-    """Searches modes, and modes with set points, in each band, and writes both controller files.
+    out: Path,
+    families: Sequence[RuleFamily],
+    effort: search.Effort,
+    command: str,
+    *,
+    overrides: Sequence[str] = (),
+) -> dict[str, Found]:
+    """Searches modes, and modes with numbers of each family, in each band, and writes the controller files.
 
     A search that was stopped goes on where it was if it is asked for with the same numbers again.
 
     Args:
-        out: Folder for the two controller files.
-        trials: Trials of the search in each band.
-        trips: Training trips in each band.
-        seed: Seed of trips and search.
+        out: Folder for the controller files.
+        families: Rules to tune.
+        effort: Trials and trips in each band, and their seed.
         command: What was asked for, for the files.
         overrides: Changes for all trips, `key=value`.
 
     Returns:
-        Best modes, and best modes with set points.
+        What was found for each file, by its name; first the best modes.
 
     Raises:
         InUseError: Another process writes to the folder.
@@ -51,30 +56,35 @@ def tune(
                 f"Going on after {len(kept)} trials that were driven before.", soft_wrap=True
             )
         try:
-            best, tuned = _search(kept, trials, trips, seed, overrides)
+            found = _search(kept, families, effort, overrides)
         finally:
             if not kept:
                 kept.remove()
-        for (name, what), results in zip(_FILES, (best, tuned), strict=True):
-            description = f"{what}; chosen on training trips:\n{command}"
+        what = {BEST_MODE: _BEST_MODE_IS, **{family.name: family.what for family in families}}
+        for name, results in found.items():
+            description = f"{what[name]}; chosen on training trips:\n{command}"
             choices = [(band, result.choices) for band, result in results]
             rule_choices.write(folder / f"{name}.toml", description, choices)
     kept.remove()
-    return best, tuned
+    return found
 
 
 def _search(
-    kept: KeptTrials, trials: int, trips: int, seed: int, overrides: Sequence[str]
-) -> tuple[Found, Found]:
-    best: Found = []
-    tuned: Found = []
+    kept: KeptTrials,
+    families: Sequence[RuleFamily],
+    effort: search.Effort,
+    overrides: Sequence[str],
+) -> dict[str, Found]:
+    found: dict[str, Found] = {BEST_MODE: [], **{family.name: [] for family in families}}
     with Progress(console=progress_console, disable=not progress_console.is_terminal) as progress:
-        task = progress.add_task("", total=len(BANDS) * (trials + len(search.modes())))
+        each_band = len(search.modes()) + len(families) * effort.trials
+        task = progress.add_task("", total=len(BANDS) * each_band)
         for band in BANDS:
             progress.update(task, description=band.title)
-            with objective(band, trips, seed, kept, overrides=overrides) as goal:
-                best.append((band, search.best_mode(goal, lambda: progress.advance(task))))
-                start = best[-1][1].choices
-                result = search.tuned(goal, start, trials, seed, lambda: progress.advance(task))
-                tuned.append((band, result))
-    return best, tuned
+            with objective(band, effort.trips, effort.seed, kept, overrides=overrides) as goal:
+                modes = search.best_mode(goal, lambda: progress.advance(task))
+                found[BEST_MODE].append((band, modes))
+                for family in families:
+                    result = search.tuned(goal, family, modes.choices, effort, lambda: progress.advance(task))
+                    found[family.name].append((band, result))
+    return found

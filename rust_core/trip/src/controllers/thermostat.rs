@@ -1,4 +1,5 @@
-//! A thermostat: full power on one side of a cabin temperature, none on the other. Untuned, to compare others with.
+//! A thermostat: power on one side of a cabin temperature, none on the other; as much as the cabin lacks where its file says so.
+//! The simplest rules there are, to compare others with.
 
 use super::options::Options;
 use super::rule_based::{CabinMode, ConstantSettings, Presets, RuleBased, constant_settings_of};
@@ -21,8 +22,14 @@ parameters! {
         half_band_k: f64 = 0.1 .. 5.0,
         /// The PTC may help while the cabin is below [degC].
         ptc_below_degc: Celsius = -40.0 .. 30.0,
-        /// Compressor power while it is on [W].
-        compressor_power_w: f64 = 100.0 .. 20000.0,
+        /// Compressor power while it is on and the cabin is at its target [W].
+        compressor_power_w: f64 = 0.0 .. 20000.0,
+        /// How much more for each Kelvin that the cabin lacks; 0: the same power whatever it lacks [W/K].
+        #[serde(default)]
+        compressor_power_per_lack_w_k: f64 = 0.0 .. 5000.0,
+        /// The heat pump does not heat while the hot loop's supply is above [degC].
+        #[serde(default = "hotter_than_any_loop")]
+        compressor_up_to_htc_degc: Celsius = 0.0 .. 150.0,
         /// Constant flow demand for the HTC [kg/s].
         htc_flow_kg_s: f64 = 0.001 .. 5.0,
         /// Constant flow demand for the chiller circuit [kg/s].
@@ -40,6 +47,11 @@ parameters! {
         #[serde(default)]
         options: Options,
     }
+}
+
+/// Limit of a file that gives none: no loop gets there.
+fn hotter_than_any_loop() -> Celsius {
+    Celsius(150.0)
 }
 
 /// Thermostat with its parameters and what it may use.
@@ -81,6 +93,18 @@ impl Thermostat {
 
     fn switches_on(&self, state: &State, mode: CabinMode) -> bool {
         self.lack_k(state, mode) > self.parameters.half_band_k
+    }
+
+    /// What the compressor is asked for [W].
+    fn compressor_power_w(&self, state: &State, mode: CabinMode) -> f64 {
+        let parameters = &self.parameters;
+        let limit_k = parameters.compressor_up_to_htc_degc.kelvin();
+        let too_hot = mode == CabinMode::Heating
+            && self.roles.hot_supplies.iter().any(|supply| state.temperatures_k[supply.index()] > limit_k);
+        if !self.strategy.heat_pump || too_hot || !self.switches_on(state, mode) {
+            return 0.0;
+        }
+        parameters.compressor_power_w + parameters.compressor_power_per_lack_w_k * self.lack_k(state, mode)
     }
 }
 
@@ -128,8 +152,7 @@ impl RuleBased for Thermostat {
         let cold = cabin_k < self.parameters.ptc_below_degc.kelvin();
         self.roles.allow_heaters(self.strategy.ptc && mode == CabinMode::Heating && cold, demand);
         if let Some(row) = self.roles.compressor_row {
-            let on = self.strategy.heat_pump && self.switches_on(state, mode);
-            demand[row] = if on { self.parameters.compressor_power_w } else { 0.0 };
+            demand[row] = self.compressor_power_w(state, mode);
         }
         if mode == CabinMode::Cooling {
             self.roles.unlimit_rejection(demand);
@@ -197,6 +220,30 @@ mod tests {
             assert!((demand[row("blower_level")] - level).abs() < 1e-9, "{cabin_degc}");
             assert!((demand[row("cabin_set_point")] - Celsius(21.5).kelvin()).abs() < 1e-9);
         }
+    }
+
+    #[test]
+    fn asks_for_more_the_more_the_cabin_lacks_until_the_hot_loop_is_too_hot() {
+        let power_w = |cabin_degc: f64, htc_degc: f64| {
+            let changes = [
+                "controller.compressor_power_w=500.0",
+                "controller.compressor_power_per_lack_w_k=100.0",
+                "controller.compressor_up_to_htc_degc=60.0",
+            ]
+            .map(|change| Override::parse(change).expect("an assignment"));
+            let experiment =
+                Experiment::load("jeffs2019/case1-4", Some("thermostat"), &changes).expect("built in");
+            let layout = experiment.plant.layout();
+            let mut run = experiment.start();
+            run.state.temperatures_k[layout.cabins[0].air.index()] = Celsius(cabin_degc).kelvin();
+            for supply in &experiment.rules.roles().hot_supplies {
+                run.state.temperatures_k[supply.index()] = Celsius(htc_degc).kelvin();
+            }
+            experiment.demand(&mut run)[experiment.plant.ranges.row("compressor_power").expect("an actuator")]
+        };
+        assert!((power_w(12.0, 40.0) - 1500.0).abs() < 1e-9);
+        assert!((power_w(20.0, 40.0) - 700.0).abs() < 1e-9);
+        assert_eq!(power_w(12.0, 60.1), 0.0);
     }
 
     #[test]
