@@ -64,3 +64,10 @@ def unit_of(name: str) -> str:
     """Returns the unit that the last part of a dotted name ends with; `-` where it has none."""
     last = name.rpartition(".")[2].partition("[")[0]
     return next((unit for ending, unit in _UNITS.items() if last.endswith(f"_{ending}")), "-")
+
+
+def titled(name: str) -> str:
+    """A name as a title: words, and its unit in brackets."""
+    unit = unit_of(name)
+    words = name.removesuffix(f"_{unit.lower()}").replace("_", " ")
+    return words if unit == "-" else f"{words} [{unit}]"

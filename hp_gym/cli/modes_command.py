@@ -38,10 +38,10 @@ def modes(
     began_s = perf_counter()
     try:
         if plot is not None:
-            from hp_gym.pictures.plotting import PICTURE_SUFFIXES
+            from hp_gym.pictures import picture_file
             from hp_gym.studies.heat_modes import modes_plot
 
-            require_suffix(plot, PICTURE_SUFFIXES)
+            require_suffix(plot, picture_file.SUFFIXES)
         compared = comparing.compare(
             vehicle,
             cycle=cycle,

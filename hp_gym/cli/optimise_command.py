@@ -58,9 +58,9 @@ def optimise(
     began_s = perf_counter()
     try:
         if plot is not None:
-            from hp_gym.pictures.plotting import PICTURE_SUFFIXES
+            from hp_gym.pictures import picture_file
 
-            require_suffix(plot, PICTURE_SUFFIXES)
+            require_suffix(plot, picture_file.SUFFIXES)
         axes = dict(parse_axis(text) for text in axis)
         found = optimising.optimise(
             {key: values if isinstance(values, Between) else list(values) for key, values in axes.items()},

@@ -65,9 +65,9 @@ def sweep(
     began_s = perf_counter()
     try:
         if plot is not None:
-            from hp_gym.pictures.plotting import PICTURE_SUFFIXES
+            from hp_gym.pictures import picture_file
 
-            require_suffix(plot, PICTURE_SUFFIXES)
+            require_suffix(plot, picture_file.SUFFIXES)
         swept = sweeping.sweep(
             dict(parse_axis(text) for text in axis),
             scenario,

@@ -33,10 +33,10 @@ def validate(
     began_s = perf_counter()
     try:
         if plot is not None:
-            from hp_gym.pictures.plotting import PICTURE_SUFFIXES
+            from hp_gym.pictures import picture_file
             from hp_gym.studies.published_values import validation_plot
 
-            require_suffix(plot, PICTURE_SUFFIXES)
+            require_suffix(plot, picture_file.SUFFIXES)
         if markdown is not None:
             require_suffix(markdown, (".md",))
         file, judged = validating.validate(published, cars=_cars(car or []), threads=threads)

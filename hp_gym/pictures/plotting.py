@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from hp_gym import extras, vehicle_layout
-from hp_gym.files import atomic_write, require_suffix
-from hp_gym.pictures import panels
+from hp_gym.pictures import panels, picture_file
 from hp_gym.pictures.panels import GREEN, GREY, Connections
 
 with extras.needed("plot"):
-    import matplotlib as mpl
     from matplotlib import pyplot as plt
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -22,40 +20,14 @@ if TYPE_CHECKING:
     import os
 
     from matplotlib.axes import Axes
-    from matplotlib.typing import RcKeyType
     from numpy.typing import NDArray
 
     from hp_gym.pictures.panels import Curve, Panel
     from hp_gym.trajectory import Trajectory
 
-PICTURE_SUFFIXES: Final = (".png", ".svg", ".pdf")
 SIZE_INCH: Final = (14.0, 13.0)
 FULL_ROWS: Final = 5
 """Rows of panels that fill that size."""
-
-STYLE: Final[dict[RcKeyType, Any]] = {
-    "font.family": "DejaVu Sans",
-    "font.size": 9,
-    "axes.titlesize": 10,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": GREY,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "axes.xmargin": 0.0,
-    "grid.color": "#ececec",
-    "xtick.color": "#404040",
-    "ytick.color": "#404040",
-    "lines.linewidth": 1.3,
-    "legend.frameon": False,
-    "legend.fontsize": 8.5,
-    "legend.handlelength": 1.2,
-    "legend.columnspacing": 1.0,
-    "legend.borderaxespad": 0.0,
-    "savefig.dpi": 150,
-}
 
 
 def plot(trajectory: Trajectory, path: str | os.PathLike[str] | None = None) -> Figure:
@@ -70,15 +42,14 @@ def plot(trajectory: Trajectory, path: str | os.PathLike[str] | None = None) -> 
         ValueError: The path ends otherwise.
         OSError: The file cannot be written; one that stood there stays as it was.
     """
-    suffix = "" if path is None else require_suffix(path, PICTURE_SUFFIXES)
-    with mpl.rc_context(STYLE):
+    # A figure of pyplot stays open until it is closed, so one for a file is none.
+    new = plt.figure if path is None else Figure
+
+    def draw() -> Figure:
         layout = ConstrainedLayoutEngine(w_pad=0.1, h_pad=0.08, hspace=0.02, wspace=0.02)
-        if path is None:
-            return _draw(plt.figure(figsize=SIZE_INCH, layout=layout), trajectory)
-        figure = _draw(Figure(figsize=SIZE_INCH, layout=layout), trajectory)
-        with atomic_write(path) as temporary:
-            figure.savefig(temporary, format=suffix.removeprefix("."))
-        return figure
+        return _draw(new(figsize=SIZE_INCH, layout=layout), trajectory)
+
+    return picture_file.drawn(draw, path)
 
 
 def _draw(figure: Figure, trajectory: Trajectory) -> Figure:

@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hp_gym import extras
-from hp_gym.files import atomic_write, require_suffix
-from hp_gym.key_units import unit_of
-from hp_gym.pictures.plotting import PICTURE_SUFFIXES, STYLE
+from hp_gym.key_units import titled
+from hp_gym.pictures.picture_file import drawn
 
 with extras.needed("studies"):
-    import matplotlib as mpl
     from matplotlib.figure import Figure
 
 if TYPE_CHECKING:
@@ -34,23 +32,17 @@ def plot(found: Found, path: str | os.PathLike[str] | None) -> Figure:
         ValueError: The path ends otherwise.
         OSError: The file cannot be written; one that stood there stays as it was.
     """
-    suffix = "" if path is None else require_suffix(path, PICTURE_SUFFIXES)
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 4.4), layout="constrained")
-        panel = figure.subplots()
-        if len(found.goals) > 1:
-            _front(panel, found)
-        else:
-            _approach(panel, found)
-        if path is not None:
-            with atomic_write(path) as temporary:
-                figure.savefig(temporary, format=suffix.removeprefix("."))
+    return drawn(lambda: _figure(found), path)
+
+
+def _figure(found: Found) -> Figure:
+    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
+    panel = figure.subplots()
+    if len(found.goals) > 1:
+        _front(panel, found)
+    else:
+        _approach(panel, found)
     return figure
-
-
-def _titled(kpi: str) -> str:
-    unit = unit_of(kpi)
-    return kpi.removesuffix(f"_{unit.lower()}").replace("_", " ") + ("" if unit == "-" else f" [{unit}]")
 
 
 def _front(panel: Axes, found: Found) -> None:
@@ -66,8 +58,8 @@ def _front(panel: Axes, found: Found) -> None:
     ordered = sorted(front, key=lambda trial: trial.values[1])
     across, up = ([trial.values[place] for trial in ordered] for place in (1, 0))
     panel.plot(across, up, "o-", markersize=4.0, label=f"front, {len(front)} trials")
-    panel.set_xlabel(_titled(found.goals[1]))
-    panel.set_ylabel(_titled(found.goals[0]))
+    panel.set_xlabel(titled(found.goals[1]))
+    panel.set_ylabel(titled(found.goals[0]))
     panel.margins(x=0.04, y=0.04)
     panel.legend()
 
@@ -83,6 +75,6 @@ def _approach(panel: Axes, found: Found) -> None:
     panel.plot(numbers, values, ".", color="#b8b8b8", label="trials that keep the constraints")
     panel.step(numbers, best, where="post", label="best so far")
     panel.set_xlabel("trial")
-    panel.set_ylabel(_titled(found.goals[0]))
+    panel.set_ylabel(titled(found.goals[0]))
     panel.margins(x=0.02)
     panel.legend()

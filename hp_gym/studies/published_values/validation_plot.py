@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from hp_gym import extras
-from hp_gym.files import atomic_write, require_suffix
-from hp_gym.pictures.plotting import PICTURE_SUFFIXES, STYLE
+from hp_gym.pictures.picture_file import drawn
 from hp_gym.studies.published_values.validation_report import GROUPS, number
 
 with extras.needed("plot"):
-    import matplotlib as mpl
     from matplotlib.figure import Figure
 
 if TYPE_CHECKING:
@@ -39,16 +37,15 @@ def plot(judged: Sequence[Judged], path: str | os.PathLike[str] | None) -> Figur
         ValueError: The path ends otherwise.
         OSError: The file cannot be written; one that stood there stays as it was.
     """
-    suffix = "" if path is None else require_suffix(path, PICTURE_SUFFIXES)
+    return drawn(lambda: _figure(judged), path)
+
+
+def _figure(judged: Sequence[Judged]) -> Figure:
     groups = [[row for row in judged if row.row.group == group] for group in GROUPS]
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(13.0, 1.3 + 0.2 * max(map(len, groups))), layout="constrained")
-        for axes, title, rows in zip(figure.subplots(1, len(groups)), GROUPS.values(), groups, strict=True):
-            _panel(axes, title, rows)
-        figure.suptitle("published | model; green band: what passes", x=0.01, ha="left", fontsize=9)
-        if path is not None:
-            with atomic_write(path) as temporary:
-                figure.savefig(temporary, format=suffix.removeprefix("."))
+    figure = Figure(figsize=(13.0, 1.3 + 0.2 * max(map(len, groups))), layout="constrained")
+    for axes, title, rows in zip(figure.subplots(1, len(groups)), GROUPS.values(), groups, strict=True):
+        _panel(axes, title, rows)
+    figure.suptitle("published | model; green band: what passes", x=0.01, ha="left", fontsize=9)
     return figure
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from hp_gym import extras
-from hp_gym.pictures.plotting import STYLE
+from hp_gym.pictures.picture_file import STYLE
 from hp_gym.studies.reproduction.paper import PUBLISHED_SCENARIOS
 from hp_gym.studies.reproduction.runs import Runs
 from hp_gym.transactions import new_contents

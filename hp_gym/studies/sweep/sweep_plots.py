@@ -7,13 +7,11 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from hp_gym import extras
-from hp_gym.files import atomic_write, require_suffix
-from hp_gym.key_units import unit_of
-from hp_gym.pictures.plotting import PICTURE_SUFFIXES, STYLE
+from hp_gym.key_units import titled, unit_of
+from hp_gym.pictures.picture_file import drawn
 from hp_gym.studies.sweep.sweep_plan import SweepError
 
 with extras.needed("sweep"):
-    import matplotlib as mpl
     from matplotlib.figure import Figure
 
 if TYPE_CHECKING:
@@ -52,22 +50,11 @@ def plot(
         ValueError: The path ends otherwise.
         OSError: The file cannot be written; one that stood there stays as it was.
     """
-    suffix = "" if path is None else require_suffix(path, PICTURE_SUFFIXES)
     if kind not in KINDS:
         raise SweepError(f"kind is `{kind}`, but must be one of {', '.join(KINDS)}")
     names = swept.require_kpis(kpis)
-    with mpl.rc_context(STYLE):
-        figure = _points(swept, names) if swept.definition["sample"] else _grid(swept, names, kind)
-        if path is not None:
-            with atomic_write(path) as temporary:
-                figure.savefig(temporary, format=suffix.removeprefix("."))
-    return figure
-
-
-def _titled(name: str) -> str:
-    unit = unit_of(name)
-    text = name.removesuffix(f"_{unit.lower()}").replace("_", " ")
-    return text if unit == "-" else f"{text} [{unit}]"
+    sampled = swept.definition["sample"]
+    return drawn(lambda: _points(swept, names) if sampled else _grid(swept, names, kind), path)
 
 
 def _panels(rows: int, columns: int) -> tuple[Figure, Any]:
@@ -84,8 +71,8 @@ def _points(swept: Sweep, kpis: Sequence[str]) -> Figure:
             panel: Axes = panels[row, column]
             panel.plot(frame[axis], frame[kpi], ".", markersize=2.0, alpha=0.5)
             panel.margins(x=0.02)
-            panel.set_xlabel(_titled(axis))
-            panel.set_ylabel(_titled(kpi) if column == 0 else "")
+            panel.set_xlabel(titled(axis))
+            panel.set_ylabel(titled(kpi) if column == 0 else "")
     return figure
 
 
@@ -110,7 +97,7 @@ def _grid(swept: Sweep, kpis: Sequence[str], kind: str) -> Figure:
             else:
                 mesh = _heat(panel, part, shown, limits)
                 if column == len(facets) - 1:
-                    figure.colorbar(mesh, ax=panels[row, :].tolist(), label=_titled(kpi))
+                    figure.colorbar(mesh, ax=panels[row, :].tolist(), label=titled(kpi))
             panel.set_title(_title(data, axes, facet, kpi))
     if averaged:
         figure.suptitle(f"means over {', '.join(averaged)}")
@@ -124,11 +111,11 @@ def _facets(data: xr.Dataset, axis: str) -> list[int]:
 
 def _title(data: xr.Dataset, axes: Sequence[str], facet: int | None, kpi: str) -> str:
     if facet is None:
-        return _titled(kpi)
+        return titled(kpi)
     value = data[axes[2]].to_numpy()[facet]
     unit = unit_of(axes[2])
     shown = f"{value:g}" if data[axes[2]].dtype.kind == "f" else str(value)
-    return f"{_titled(axes[2]).partition(' [')[0]} {shown}" + ("" if unit == "-" else f" {unit}")
+    return f"{titled(axes[2]).partition(' [')[0]} {shown}" + ("" if unit == "-" else f" {unit}")
 
 
 def _places(part: xr.DataArray, axis: str) -> tuple[NDArray[np.float64], list[str] | None]:
@@ -150,8 +137,8 @@ def _lines(panel: Axes, part: xr.DataArray, shown: Sequence[str]) -> None:
             label = f"{value:g}" if part[shown[1]].dtype.kind == "f" else str(value)
             line = part.isel({shown[1]: int(place)}).to_numpy()
             panel.plot(places, line, marker="o", markersize=3.0, label=label)
-        panel.legend(title=_titled(shown[1]), ncols=2)
-    panel.set_xlabel(_titled(shown[0]))
+        panel.legend(title=titled(shown[1]), ncols=2)
+    panel.set_xlabel(titled(shown[0]))
     if labels is not None:
         panel.set_xticks(places, labels, rotation=30, ha="right")
 
@@ -166,8 +153,8 @@ def _heat(panel: Axes, part: xr.DataArray, shown: Sequence[str], limits: tuple[f
         across[columns], up[rows], values, shading="nearest", vmin=limits[0], vmax=limits[1]
     )
     panel.grid(visible=False)
-    panel.set_xlabel(_titled(shown[0]))
-    panel.set_ylabel(_titled(shown[1]))
+    panel.set_xlabel(titled(shown[0]))
+    panel.set_ylabel(titled(shown[1]))
     if across_labels is not None:
         panel.set_xticks(across, across_labels, rotation=30, ha="right")
     if up_labels is not None:
