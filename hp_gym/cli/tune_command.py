@@ -1,7 +1,7 @@
 """`hp-gym tune`: the rules at their best."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -20,6 +20,13 @@ def tune(
     trips: Annotated[int, typer.Option(min=1, help="Training trips in each ambient band.")] = 128,
     seed: Annotated[int, typer.Option(min=0, help="Seed of trips and search.")] = 0,
     overrides: many_runs.Overrides = None,
+    comfort: Annotated[
+        Literal["pooled", "standard"],
+        typer.Option(
+            help="What rules are held to: mean discomfort over all trips, or the standard of "
+            "docs/benchmark.md trip by trip."
+        ),
+    ] = "pooled",
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
     """Chooses modes, and modes with set points, for each ambient band on training trips."""
@@ -28,8 +35,11 @@ def tune(
 
     how = f"hp-gym tune --trials {trials} --trips {trips} --seed {seed}"
     how += f" --overrides {overrides}" if overrides else ""
+    how += f" --comfort {comfort}" if comfort != "pooled" else ""
     try:
-        best, tuned = tuned_rules.tune(out, trials, trips, seed, how, overrides=assignments(overrides))
+        best, tuned = tuned_rules.tune(
+            out, trials, trips, seed, how, overrides=assignments(overrides), comfort=comfort
+        )
     except (ValueError, OSError) as error:
         fail(error)
     if json:

@@ -9,7 +9,7 @@ from rich.progress import Progress
 from hp_gym.studies.tuning import rule_choices, search
 from hp_gym.studies.tuning.ambient_bands import BANDS, Band
 from hp_gym.studies.tuning.kept_trials import KeptTrials
-from hp_gym.studies.tuning.objective import objective
+from hp_gym.studies.tuning.objective import Comfort, objective
 from hp_gym.terminal import progress_console
 from hp_gym.transactions import new_contents
 
@@ -23,7 +23,14 @@ _FILES: Final = (
 
 
 def tune(
-    out: Path, trials: int, trips: int, seed: int, command: str, *, overrides: Sequence[str] = ()
+    out: Path,
+    trials: int,
+    trips: int,
+    seed: int,
+    command: str,
+    *,
+    overrides: Sequence[str] = (),
+    comfort: Comfort = "pooled",
 ) -> tuple[Found, Found]:
     """Searches modes, and modes with set points, in each band, and writes both controller files.
 
@@ -36,6 +43,7 @@ def tune(
         seed: Seed of trips and search.
         command: What was asked for, for the files.
         overrides: Changes for all trips, `key=value`.
+        comfort: What rules are held to.
 
     Returns:
         Best modes, and best modes with set points.
@@ -51,7 +59,7 @@ def tune(
                 f"Going on after {len(kept)} trials that were driven before.", soft_wrap=True
             )
         try:
-            best, tuned = _search(kept, trials, trips, seed, overrides)
+            best, tuned = _search(kept, trials, trips, seed, overrides=overrides, comfort=comfort)
         finally:
             if not kept:
                 kept.remove()
@@ -64,7 +72,7 @@ def tune(
 
 
 def _search(
-    kept: KeptTrials, trials: int, trips: int, seed: int, overrides: Sequence[str]
+    kept: KeptTrials, trials: int, trips: int, seed: int, *, overrides: Sequence[str], comfort: Comfort
 ) -> tuple[Found, Found]:
     best: Found = []
     tuned: Found = []
@@ -72,7 +80,7 @@ def _search(
         task = progress.add_task("", total=len(BANDS) * (trials + len(search.modes())))
         for band in BANDS:
             progress.update(task, description=band.title)
-            with objective(band, trips, seed, kept, overrides=overrides) as goal:
+            with objective(band, trips, seed, kept, overrides=overrides, comfort=comfort) as goal:
                 best.append((band, search.best_mode(goal, lambda: progress.advance(task))))
                 start = best[-1][1].choices
                 result = search.tuned(goal, start, trials, seed, lambda: progress.advance(task))
