@@ -1,7 +1,7 @@
 """`hp-gym tune`: the rules at their best."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -23,6 +23,13 @@ def tune(
     trips: Annotated[int, typer.Option(min=1, help="Training trips in each ambient band.")] = 128,
     seed: Annotated[int, typer.Option(min=0, help="Seed of trips and search.")] = 0,
     overrides: many_runs.Overrides = None,
+    comfort: Annotated[
+        Literal["pooled", "standard"],
+        typer.Option(
+            help="What rules are held to: mean discomfort over all trips, or the standard of "
+            "docs/benchmark.md trip by trip."
+        ),
+    ] = "pooled",
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
     """Chooses modes, and modes with numbers, of rules for each ambient band on training trips."""
@@ -31,6 +38,7 @@ def tune(
 
     words = ["hp-gym tune", *(rules or []), f"--trials {trials} --trips {trips} --seed {seed}"]
     words += [f"--overrides {overrides}"] if overrides else []
+    words += [f"--comfort {comfort}"] if comfort != "pooled" else []
     try:
         families = [rule_families.family(name) for name in dict.fromkeys(rules or rule_families.FAMILIES)]
         found = tuned_rules.tune(
@@ -39,6 +47,7 @@ def tune(
             search.Effort(trials, trips, seed),
             " ".join(words),
             overrides=assignments(overrides),
+            comfort=comfort,
         )
     except (ValueError, OSError) as error:
         fail(error)

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from hp_gym.agents.training import configuration, environments
 from hp_gym.agents.training.comfort import ComfortConstraint, by_climate
 from hp_gym.agents.training.trips import Driven
+from hp_gym.comfort_standard import TripComfort
 
 DEGC = [-10.0, 5.0, 20.0]
 CHANGES = (
@@ -30,7 +31,8 @@ def constraint(made: configuration.Training) -> ComfortConstraint:
 
 def trips(ambient_degc: list[float], duration_s: list[float]) -> Driven:
     nothing = np.zeros(len(ambient_degc))
-    return Driven(np.array(ambient_degc), np.array(duration_s), nothing, nothing, nothing, nothing)
+    comfort = TripComfort(*[nothing] * 7)
+    return Driven(np.array(ambient_degc), np.array(duration_s), nothing, nothing, nothing, nothing, comfort)
 
 
 some_trips = st.lists(

@@ -40,6 +40,7 @@ class Controller:
             control_interval_s, overrides, ...
         seed: Seed that it was trained or is drawn with; `NO_SEED` without one.
         learned: Whether it is judged against the rules, as learned and users' controllers are.
+        rules: Whether it is one of the rules, which a controller file gives.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Controller:
     environment: Mapping[str, Any] = field(default_factory=dict)
     seed: int = NO_SEED
     learned: bool = False
+    rules: bool = False
 
     def with_overrides(self, changes: Sequence[str]) -> Controller:
         """The same in a car in which values differ; what it needs itself stays.

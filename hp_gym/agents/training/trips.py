@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hp_gym.agents.training.configuration import Training
+from hp_gym.comfort_standard import FIGURES, TripComfort
 from hp_gym.envs.hpcu_policy import HpcuPolicy
 from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
 
@@ -26,6 +27,7 @@ class Driven:
         attributable_energy_kwh: Energy beyond the trip's reference.
         discomfort_k: Mean distance of the cabin from 22 degC.
         arrived: 1 for trips that arrived, else 0.
+        comfort: What their comfort is judged by.
     """
 
     ambient_degc: NDArray[np.float64]
@@ -34,6 +36,7 @@ class Driven:
     attributable_energy_kwh: NDArray[np.float64]
     discomfort_k: NDArray[np.float64]
     arrived: NDArray[np.float64]
+    comfort: TripComfort
 
 
 class FixedTrips:
@@ -111,12 +114,14 @@ def drive(envs: EVHeatPumpVectorEnv, seeds: Sequence[int], decide: Decide, *, ma
         for trip in envs.finished:
             if under_way[trip.index]:
                 arrived = float(trip.end_reason == "arrived")
-                duration_s = trip.summary["duration_s"]
-                ends[trip.index] = {**trip.kpis, "arrived": arrived, "duration_s": duration_s}
+                figures = {name: trip.summary[name] for name in FIGURES}
+                ends[trip.index] = {**trip.kpis, **figures, "arrived": arrived}
         under_way &= ~terminated
     envs.close()
-    values = {name: np.array([end[name] for end in ends]) for name in _OF_THE_END}
-    return Driven(ambient_degc=np.array(ambient_degc), **values)
+    values = {name: np.array([end[name] for end in ends]) for name in {*_OF_THE_END, *FIGURES}}
+    comfort = TripComfort.of(values, 1.0 - values["arrived"])
+    of_the_end = {name: values[name] for name in _OF_THE_END}
+    return Driven(ambient_degc=np.array(ambient_degc), **of_the_end, comfort=comfort)
 
 
 _OF_THE_END = ("duration_s", "score", "attributable_energy_kwh", "discomfort_k", "arrived")

@@ -9,10 +9,13 @@ from threadpoolctl import threadpool_limits
 
 from hp_gym.agents.controllers import ControllerError
 from hp_gym.agents.controllers.learned import ABLATION
+from hp_gym.agents.controllers.learned import REFERENCE as SHIPPED
 from hp_gym.agents.controllers.rule_based import FILES
-from hp_gym.studies.benchmark import environment_facts, statistics, summary
+from hp_gym.comfort_standard import REFERENCE
+from hp_gym.studies.benchmark import environment_facts, statistics, summary, verdicts
 from hp_gym.studies.benchmark.drive import drive_all, trajectories
 from hp_gym.studies.benchmark.fronts import OFFSETS, settings
+from hp_gym.studies.benchmark.headline_claim import Claims
 from hp_gym.studies.benchmark.results import Benchmark
 
 if TYPE_CHECKING:
@@ -35,7 +38,7 @@ class Plan:
 
     Attributes:
         grid: Trips.
-        controllers: Who drives them; the paper's HPCU must be among them.
+        controllers: Who drives them; the paper's HPCU and the reference of comfort must be among them.
         command: What was asked for, in words of the command line.
         seed: Seed of the resamples (that of the controller `random` is its own).
         resamples: How many.
@@ -64,8 +67,8 @@ def run(
         The results, and the runs of the rules with other set points, one row each.
 
     Raises:
-        ControllerError: Two controllers have the same name and seed, the paper's HPCU is missing, an
-            environment cannot be made, or actions do not fit.
+        ControllerError: Two controllers have the same name and seed, the paper's HPCU or the reference of
+            comfort is missing, an environment cannot be made, or actions do not fit.
         OSError: The folder cannot be written to.
     """
     import pandas as pd
@@ -89,7 +92,7 @@ def run(
     with threadpool_limits(1):
         rows = drive_all(tasks, files, progress)
         shown = _trajectories(plan, files)
-    runs = pd.DataFrame([row for driven in rows[: len(plan.controllers)] for row in driven])
+    runs = verdicts.judged(pd.DataFrame([row for driven in rows[: len(plan.controllers)] for row in driven]))
     front_runs = _front_runs(rivals, rows[len(plan.controllers) :])
     resamples = statistics.resample(
         [scenario.ambient_temperature_degc for scenario in grid.scenarios], plan.resamples, plan.seed
@@ -107,6 +110,7 @@ def _summary(
     plan: Plan, evidence: summary.Evidence, learned: Sequence[str], ablations: dict[str, Any] | None
 ) -> dict[str, Any]:
     return {
+        **_claims(plan, evidence.runs, learned).figures(),
         "gains": summary.all_gains(evidence, learned),
         "limit_breaches": summary.counts(evidence.runs, "limit_breaches"),
         "stranded_trips": summary.counts(evidence.runs, "stranded"),
@@ -114,11 +118,33 @@ def _summary(
         "ablations": ablations,
         "grid": summary.grid_facts(plan.grid),
         "bootstrap": {"resamples": plan.resamples, "seed": plan.seed, "strata": "ambient temperature"},
+        "clusters": clusters(plan.grid),
         "command": plan.command,
         "overrides": list(plan.overrides),
         "versions": environment_facts.versions(),
         "hardware": environment_facts.hardware(),
     }
+
+
+def _claims(plan: Plan, runs: pd.DataFrame, learned: Sequence[str]) -> Claims:
+    scenarios = plan.grid.scenarios
+    resamples = statistics.resample_clusters(
+        [(scenario.cycle.name, scenario.ambient_temperature_degc) for scenario in scenarios],
+        [scenario.band.name for scenario in scenarios],
+        plan.resamples,
+        plan.seed,
+    )
+    rules = list(dict.fromkeys(each.name for each in plan.controllers if each.rules and not each.learned))
+    return Claims(plan.grid, runs, resamples, rules, learned, shipped=SHIPPED, paper=summary.PAPER)
+
+
+def clusters(grid: Grid) -> dict[str, int]:
+    """Counts the clusters, pairs of cycle and ambient temperature, of each band: intervals rest on them."""
+    pairs = {
+        (scenario.cycle.name, scenario.ambient_temperature_degc): scenario.band for scenario in grid.scenarios
+    }
+    counted = {band.name: sum(of == band for of in pairs.values()) for band in grid.bands}
+    return {name: count for name, count in counted.items() if count}
 
 
 def _check(controllers: Iterable[Controller]) -> None:
@@ -128,8 +154,9 @@ def _check(controllers: Iterable[Controller]) -> None:
         if key in seen:
             raise ControllerError(f"controller `{controller.name}` is there twice")
         seen.add(key)
-    if all(name != summary.PAPER for name, _ in seen):
-        raise ControllerError(f"`{summary.PAPER}` must be among the controllers: others are compared with it")
+    for rules in (summary.PAPER, REFERENCE):
+        if all(name != rules for name, _ in seen):
+            raise ControllerError(f"`{rules}` must be among the controllers: others are compared with it")
 
 
 def _front_runs(rivals: Sequence[Setting], rows: Sequence[Sequence[dict[str, Any]]]) -> pd.DataFrame:
@@ -157,5 +184,5 @@ def _trajectories(plan: Plan, files: dict[str, Path]) -> dict[str, dict[str, pd.
 def needed_rules(names: Iterable[str], available: Iterable[str]) -> list[str]:
     """Names of controllers with the rules put first that others are compared with, where there are such."""
     given = list(names)
-    compared = [summary.PAPER, *(name for name in FILES[-1:] if name in available)]
+    compared = [summary.PAPER, REFERENCE, *(name for name in FILES[-1:] if name in available)]
     return [*(name for name in compared if name not in given), *given]

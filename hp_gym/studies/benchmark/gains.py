@@ -52,15 +52,15 @@ def gain(
         rules_kwh = resamples.mean_over_runs(rules.net_kwh(credit))
         at_comfort_pct = change_pct(agent_kwh, matched.front_energy_kwh(agent_k, front_k, front_kwh))
         by_credit[f"{credit:g}"] = {
-            **_figure("attributable_energy_pct", "ci95", at_comfort_pct),
-            **_figure("own_set_points_pct", "own_set_points_ci95", change_pct(agent_kwh, rules_kwh)),
+            **figure("attributable_energy_pct", "ci95", at_comfort_pct),
+            **figure("own_set_points_pct", "own_set_points_ci95", change_pct(agent_kwh, rules_kwh)),
             "by_seed": _by_seed(agent, complete, credit, resamples, seeds),
         }
     worse = max(by_credit, key=lambda credit: _as_worst(by_credit[credit]["attributable_energy_pct"]))
     return {
         "attributable_energy_pct": by_credit[worse]["attributable_energy_pct"],
         "ci95": by_credit[worse]["ci95"],
-        **_figure("discomfort_k", "discomfort_ci95", agent_k - rules_k),
+        **figure("discomfort_k", "discomfort_ci95", agent_k - rules_k),
         "credit": float(worse),
         "matched": matched.how_matched(float(agent_k[0]), front_k[0]),
         "seeds": list(seeds),
@@ -75,8 +75,8 @@ def paired(agent: Trips, rules: Trips, resamples: Resamples) -> dict[str, Any]:
         return {"energy_difference_pct": None, "discomfort_difference_k": None}
     agent_kwh, rules_kwh = (resamples.mean_over_runs(each.energy_kwh) for each in (agent, rules))
     difference_k = _discomfort_k(agent, resamples) - _discomfort_k(rules, resamples)
-    figures = _figure("energy_difference_pct", "energy_difference_ci95", change_pct(agent_kwh, rules_kwh))
-    figures |= _figure("discomfort_difference_k", "discomfort_difference_ci95", difference_k)
+    figures = figure("energy_difference_pct", "energy_difference_ci95", change_pct(agent_kwh, rules_kwh))
+    figures |= figure("discomfort_difference_k", "discomfort_difference_ci95", difference_k)
     return figures | {"discomfort_difference_upper95_k": figures["discomfort_difference_ci95"][1]}
 
 
@@ -97,18 +97,20 @@ def _by_seed(
     count = len(own_k)
     needed = matched.front_energy_kwh(own_k, np.tile(front_k, (count, 1)), np.tile(front_kwh, (count, 1)))
     changes_pct = change_pct(agent.net_kwh(credit) @ weights, needed)
-    return {str(seed): _number(change) for seed, change in zip(seeds, changes_pct, strict=True)}
+    return {str(seed): number(change) for seed, change in zip(seeds, changes_pct, strict=True)}
 
 
 def _discomfort_k(trips: Trips, resamples: Resamples) -> NDArray[np.float64]:
     return resamples.mean_over_runs(trips.discomfort_k_h) / resamples.mean_over_runs(trips.occupied_h)
 
 
-def _figure(name: str, interval_name: str, resampled: NDArray[np.float64]) -> dict[str, Any]:
-    return {name: _number(resampled[0]), interval_name: statistics.interval(resampled[1:])}
+def figure(name: str, interval_name: str, resampled: NDArray[np.float64]) -> dict[str, Any]:
+    """A figure and its interval by name, of resamples that begin with the trips as they are."""
+    return {name: number(resampled[0]), interval_name: statistics.interval(resampled[1:])}
 
 
-def _number(value: float) -> float | None:
+def number(value: float) -> float | None:
+    """The value, or None where there is none."""
     return float(value) if np.isfinite(value) else None
 
 

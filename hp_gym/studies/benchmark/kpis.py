@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
+from hp_gym import comfort_standard
 from hp_gym.studies.benchmark.results import IDENTITY, KPIS
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ _TOTALS: Final = (
     "time_to_comfort_s",
     "compressor_starts",
     "limit_breaches",
+    *(name for name in comfort_standard.FIGURES if name != "duration_s"),
 )
 _REWARD_TERMS: Final = (
     "attributable_energy_kwh",

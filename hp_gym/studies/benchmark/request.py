@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import datetime
 from dataclasses import dataclass
+from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 import hp_gym
-from hp_gym import transactions
+from hp_gym import comfort_standard, toml_files, transactions
 from hp_gym.agents.controllers import DEFAULTS, Controller, ControllerError, learned, resolve
+from hp_gym.agents.controllers.registry import RULES_SUFFIX
 from hp_gym.agents.controllers.rule_based import FILES
 from hp_gym.overrides import assignments
 from hp_gym.studies.benchmark import benchmark_plan, drive, grid, results_folder
@@ -19,7 +21,6 @@ from hp_gym.studies.benchmark.report import write_report
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from rich.console import Console
 
@@ -131,12 +132,31 @@ def controllers(request: Request, console: Console) -> list[Controller]:
         for name in missing:
             console.print(f"No `{name}` yet: there is no file of it. The others run without it.")
         names = [name for name in names if name not in missing]
+    names = [comfort_standard.REFERENCE if _is_reference(name) else name for name in names]
     chosen = [
         controller
         for name in benchmark_plan.needed_rules(dict.fromkeys(names), rules)
         for controller in resolve(name, seed=request.seed, seeds=request.seeds, allow_code=request.allow_code)
     ]
     return chosen + (learned.ablations() if learned.REFERENCE in names else [])
+
+
+def _is_reference(name: str) -> bool:
+    """Whether a controller file is that of the reference, which always runs.
+
+    Raises:
+        ControllerError: It has the reference's name only.
+    """
+    path, reference = Path(name), comfort_standard.REFERENCE
+    if path.suffix != RULES_SUFFIX or path.stem != reference or not path.is_file():
+        return False
+    theirs, ours = ([tables for _, tables in toml_files.chain("controller", of)] for of in (name, reference))
+    if theirs != ours:
+        raise ControllerError(
+            f"controller `{name}` differs from `{reference}`, which comfort is judged by; "
+            "give its file another name"
+        )
+    return True
 
 
 def _changes(request: Request) -> list[str]:

@@ -43,6 +43,14 @@ KPIS: Final = (
     "final_soc_pct",
     "time_to_comfort_s",
     "comfortable_share_pct",
+    "time_to_near_comfort_s",
+    "outside_near_comfort_k_s",
+    "discomfort_afterwards_k",
+    "equivalent_time_to_near_comfort_s",
+    "equivalent_outside_near_comfort_k_s",
+    "equivalent_discomfort_afterwards_k",
+    "fog_s",
+    "co2_above_1500_ppm_s",
     "battery_window_k_h",
     "protection_trips",
     "compressor_starts",
@@ -50,6 +58,9 @@ KPIS: Final = (
     "stranded",
 )
 """KPIs of a run in the order of the table; docs/benchmark.md defines each."""
+
+VERDICTS: Final = ("in_time", "comfortable", "in_good_air", "passes", "passes_equivalent")
+"""Columns of a run that say whether its comfort is accepted (`hp_gym.comfort_standard`)."""
 
 FRONT_COLUMNS: Final = (
     "family",
@@ -73,7 +84,8 @@ class Benchmark:
     """Everything that a benchmark found.
 
     Attributes:
-        runs: One row for each controller, seed and scenario, with the columns `IDENTITY` and `KPIS`.
+        runs: One row for each controller, seed and scenario, with the columns `IDENTITY`, `KPIS`
+            and `VERDICTS`.
         fronts: What the rules reach with other set points, with the columns `FRONT_COLUMNS`.
         summary: What `summary.json` holds; docs/benchmark.md lists its keys.
         trajectories: Signals second by second of a few scenarios, by scenario, then by controller (learned

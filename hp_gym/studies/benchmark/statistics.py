@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Hashable, Sequence
 
     import pandas as pd
     from numpy.typing import NDArray
@@ -114,6 +114,23 @@ def resample(strata: Sequence[object], count: int, seed: int) -> Resamples:
         size = len(places)
         weights[1:, places] = generator.multinomial(size, np.full(size, 1.0 / size), size=count)
     return Resamples(weights, seed)
+
+
+def resample_clusters(
+    clusters: Sequence[Hashable], strata: Sequence[Hashable], count: int, seed: int
+) -> Resamples:
+    """Draws clusters of scenarios with replacement within strata; a cluster's scenarios come and go together.
+
+    Args:
+        clusters: Cluster of each scenario.
+        strata: Stratum of each scenario, the same all over a cluster.
+        count: Number of resamples.
+        seed: Seed.
+    """
+    stratum_of = dict(zip(clusters, strata, strict=True))
+    drawn = resample(list(stratum_of.values()), count, seed)
+    place_of = {cluster: place for place, cluster in enumerate(stratum_of)}
+    return Resamples(drawn.scenarios[:, [place_of[cluster] for cluster in clusters]], seed)
 
 
 def interval(resampled: NDArray[np.float64]) -> list[float | None]:

@@ -124,7 +124,8 @@ def kpis(runs: pd.DataFrame) -> dict[str, Any]:
     if runs.empty:
         return values
     # A cabin that is never comfortable counts with the whole trip.
-    filled = runs.assign(time_to_comfort_s=runs["time_to_comfort_s"].fillna(runs["duration_s"]))
+    times = [name for name in KPIS if name.endswith("comfort_s")]
+    filled = runs.assign(**{name: runs[name].fillna(runs["duration_s"]) for name in times})
     values |= {name: float(filled[name].mean()) for name in KPIS if name not in _SUMS}
     values |= {name: int(filled[name].sum()) for name in _SUMS}
     values["attributable_energy_kwh_per_100_km"] = float(

@@ -30,6 +30,13 @@ def tables(summary: Mapping[str, Any]) -> Iterable[RenderableType]:
         yield _gains(summary)
         yield "Less is negative. Discomfort: against the rules at their own set points."
     yield from _remarks(summary)
+    reference = summary["comfort"]["reference"]
+    yield f"[bold]Trips that pass beside `{reference}`, %[/] (in brackets: in equivalent temperature)"
+    yield _passes(summary)
+    yield "[bold]Energy over the trips that both pass, the worse of arrival credits 0 and 0.5[/]"
+    yield _paired_gains(summary)
+    yield "Charged: over all trips, a failed one with the dearest passing controller's energy."
+    yield from _headline(summary)
 
 
 def _controllers(summary: Mapping[str, Any]) -> Table:
@@ -94,6 +101,53 @@ def _gains(summary: Mapping[str, Any]) -> Table:
             str(len(gain.get("seeds", []))),
         )
     return table
+
+
+def _passes(summary: Mapping[str, Any]) -> Table:
+    table = _table()
+    table.add_column("controller", no_wrap=True, max_width=18)
+    shown = [name for name, band in summary["grid"]["bands"].items() if band["scenarios"]]
+    for name in ("all", *shown):
+        table.add_column(name if name == "all" else f"{name}\n°C", justify="right", no_wrap=True)
+    for controller, rates in summary["comfort"]["controllers"].items():
+        cells = [f"{rates['passed_pct']:.0f} ({rates['passed_equivalent_pct']:.0f})"]
+        cells += [f"{rates['bands'][name]['passed_pct']:.0f}" for name in shown]
+        table.add_row(controller, *cells)
+    return table
+
+
+def _paired_gains(summary: Mapping[str, Any]) -> Table:
+    table = _table()
+    table.add_column("comparison", no_wrap=True, max_width=34)
+    for heading in ("energy\n%", "95 % interval\n%", "charged\n%", "pairs"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for name, gain in summary["paired_gains"].items():
+        table.add_row(
+            name.replace("_vs_", " vs "),
+            _signed(gain["attributable_energy_pct"], 1),
+            " .. ".join(_signed(end, 1) for end in gain["ci95"]),
+            _signed(gain["charged_pct"], 1),
+            str(gain["pairs"]),
+        )
+    return table
+
+
+def _headline(summary: Mapping[str, Any]) -> Iterable[str]:
+    headline = summary["headline"]
+    best, learned = headline["best_rule"], headline["learned"]
+    yield f"[bold]Headline[/] Best rule: {f'`{best}`' if best else 'none'}."
+    named = {
+        "learned_vs_best_rule": f"{learned or 'Learned'} against the best rule",
+        "best_rule_vs_hpcu": "The best rule against hpcu",
+    }
+    for name, words in named.items():
+        claim = headline[name]
+        if claim is None:
+            yield f"{words}: no headline, because {headline['reasons'][name]}."
+        else:
+            low, high = (_signed(end, 1) for end in claim["ci95"])
+            energy, passed = _signed(claim["attributable_energy_pct"], 1), claim["passed_pct"]
+            yield f"{words}: {energy} % energy ({low} .. {high}), {passed:.0f} % of its trips pass."
 
 
 def _remarks(summary: Mapping[str, Any]) -> Iterable[str]:

@@ -17,7 +17,7 @@ from hp_gym.studies.tuning.rule_choices import Choices
 from hp_gym.studies.tuning.rule_families import FAMILIES
 
 Outcome: TypeAlias = tuple[float, float]
-"""Mean score of a trip, and mean discomfort [K]."""
+"""Mean score of a trip, and what it lacks in comfort, as the objective counts it."""
 
 _DIRECTIONS: Final[trial_store.Directions] = ("maximize", "minimize")
 

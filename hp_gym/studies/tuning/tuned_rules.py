@@ -9,7 +9,7 @@ from rich.progress import Progress
 from hp_gym.studies.tuning import rule_choices, search
 from hp_gym.studies.tuning.ambient_bands import BANDS, Band
 from hp_gym.studies.tuning.kept_trials import KeptTrials
-from hp_gym.studies.tuning.objective import objective
+from hp_gym.studies.tuning.objective import Comfort, objective
 from hp_gym.studies.tuning.rule_families import RuleFamily
 from hp_gym.terminal import progress_console
 from hp_gym.transactions import new_contents
@@ -30,6 +30,7 @@ def tune(
     command: str,
     *,
     overrides: Sequence[str] = (),
+    comfort: Comfort = "pooled",
 ) -> dict[str, Found]:
     """Searches modes, and modes with numbers of each family, in each band, and writes the controller files.
 
@@ -41,6 +42,7 @@ def tune(
         effort: Trials and trips in each band, and their seed.
         command: What was asked for, for the files.
         overrides: Changes for all trips, `key=value`.
+        comfort: What rules are held to.
 
     Returns:
         What was found for each file, by its name; first the best modes.
@@ -56,7 +58,7 @@ def tune(
                 f"Going on after {len(kept)} trials that were driven before.", soft_wrap=True
             )
         try:
-            found = _search(kept, families, effort, overrides)
+            found = _search(kept, families, effort, overrides=overrides, comfort=comfort)
         finally:
             if not kept:
                 kept.remove()
@@ -73,7 +75,9 @@ def _search(
     kept: KeptTrials,
     families: Sequence[RuleFamily],
     effort: search.Effort,
+    *,
     overrides: Sequence[str],
+    comfort: Comfort,
 ) -> dict[str, Found]:
     found: dict[str, Found] = {BEST_MODE: [], **{family.name: [] for family in families}}
     with Progress(console=progress_console, disable=not progress_console.is_terminal) as progress:
@@ -81,7 +85,9 @@ def _search(
         task = progress.add_task("", total=len(BANDS) * each_band)
         for band in BANDS:
             progress.update(task, description=band.title)
-            with objective(band, effort.trips, effort.seed, kept, overrides=overrides) as goal:
+            with objective(
+                band, effort.trips, effort.seed, kept, overrides=overrides, comfort=comfort
+            ) as goal:
                 modes = search.best_mode(goal, lambda: progress.advance(task))
                 found[BEST_MODE].append((band, modes))
                 for family in families:

@@ -6,7 +6,7 @@ use crate::architecture::declaration::Level;
 use crate::architecture::kind::Bounds;
 use crate::architecture::layout::{ExchangerLayout, ExchangerSide, Layout};
 use crate::architecture::ranks as rank;
-use crate::components::equivalent_temperature::{air_speed_m_s, equivalent_temperature_degc};
+use crate::components::equivalent_temperature::of_cabin;
 use crate::config::ZERO_CELSIUS_K;
 use crate::flows::Flow;
 use crate::media::moist_air::relative_humidity;
@@ -430,11 +430,8 @@ impl SignalTable {
                 "degC",
                 "uniform room with still air that takes as much heat from the occupants (ISO 14505-2)",
                 |v| {
-                    let cabin = &v.plant.layout().cabins[0];
-                    let degc = |node: Node| v.state.temperatures_k[node.index()] - ZERO_CELSIUS_K;
-                    let speed_m_s = air_speed_m_s(v.recorded(|record| record.supply_air_kg_s));
-                    let radiant_degc = 0.5 * (degc(cabin.soft) + degc(cabin.hard));
-                    equivalent_temperature_degc(degc(cabin.air), radiant_degc, speed_m_s)
+                    let supply_kg_s = v.recorded(|record| record.supply_air_kg_s);
+                    of_cabin(&v.plant.layout().cabins[0], &v.state.temperatures_k, supply_kg_s)
                 },
             ),
             function("supply_air_flow_kg_s", "kg/s", "air that the blower of the cabin moves", |v| {

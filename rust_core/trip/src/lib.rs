@@ -3,6 +3,7 @@
 //! The plant holds physics and the vehicle's own protections; whatever is an opinion (set points, thresholds, sources,
 //! requested heat flows, what counts as comfort) is here.
 
+pub mod comfort;
 pub mod controllers;
 pub mod drive_cycle;
 pub mod experiment;

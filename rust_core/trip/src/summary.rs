@@ -1,9 +1,11 @@
 //! Totals of a run.
 
+use crate::comfort::{CO2_HIGHEST_PPM, Course};
 use crate::pace::Pace;
 use hp_plant::architecture::declaration::Side;
 use hp_plant::architecture::layout::{LOOP_PLACES, Layout};
 use hp_plant::components::cabin_air::CabinAir;
+use hp_plant::components::equivalent_temperature::of_cabin;
 use hp_plant::config::vehicle::VehicleParameters;
 use hp_plant::config::{Celsius, ZERO_CELSIUS_K};
 use hp_plant::flows::{Flow, Flows};
@@ -70,6 +72,9 @@ pub struct Summary {
     discomfort_k_s: f64,
     comfortable_s: f64,
     first_comfort_s: f64,
+    /// Of the cabin's air, and of its equivalent temperature.
+    air: Course,
+    equivalent: Course,
     final_soc: f64,
     final_charge_soc: f64,
     highest_pressure_bar: f64,
@@ -85,6 +90,7 @@ pub struct Summary {
     fog_s: f64,
     fog_k_s: f64,
     co2_above_limit_ppm_s: f64,
+    co2_above_highest_s: f64,
     highest_co2_ppm: f64,
     worst_water_residual: f64,
 }
@@ -100,6 +106,8 @@ impl Default for Summary {
             discomfort_k_s: 0.0,
             comfortable_s: 0.0,
             first_comfort_s: f64::NAN,
+            air: Course::default(),
+            equivalent: Course::default(),
             final_soc: f64::NAN,
             final_charge_soc: f64::NAN,
             highest_pressure_bar: 0.0,
@@ -114,6 +122,7 @@ impl Default for Summary {
             fog_s: 0.0,
             fog_k_s: 0.0,
             co2_above_limit_ppm_s: 0.0,
+            co2_above_highest_s: 0.0,
             highest_co2_ppm: 0.0,
             worst_water_residual: 0.0,
         }
@@ -143,6 +152,8 @@ impl Summary {
                 self.first_comfort_s = self.duration_s;
             }
         }
+        self.air.add(cabin_degc);
+        self.equivalent.add(of_cabin(&layout.cabins[0], &after.temperatures_k, record.supply_air_kg_s));
         let battery_k = after.temperatures_k[layout.battery.index()];
         self.final_soc = plant.battery.usable_state_of_charge(&after.battery, battery_k);
         self.final_charge_soc = plant.battery.charge_left(&after.battery);
@@ -168,6 +179,7 @@ impl Summary {
         self.fog_k_s += fog_k * CONTROL_PERIOD_S;
         let co2_ppm = air.co2 * 1e6;
         self.co2_above_limit_ppm_s += (co2_ppm - CO2_LIMIT_PPM).max(0.0) * CONTROL_PERIOD_S;
+        self.co2_above_highest_s += f64::from(u8::from(co2_ppm > CO2_HIGHEST_PPM)) * CONTROL_PERIOD_S;
         self.highest_co2_ppm = self.highest_co2_ppm.max(co2_ppm);
         self.worst_water_residual = self.worst_water_residual.max(record.water_ledger.relative());
     }
@@ -205,6 +217,20 @@ impl Summary {
         breached |= gas_k > hottest_gas_k + TEMPERATURE_TOLERANCE_K;
         breached |= record.refrigeration.speed_rev_s > compressor.maximum_speed_rev_s * 1.001;
         self.limit_breaches += f64::from(u8::from(breached));
+    }
+
+    /// What a trip's comfort is judged by.
+    fn comfort(&self) -> [(&'static str, f64); 7] {
+        let (air, equivalent) = (&self.air, &self.equivalent);
+        [
+            ("time_to_near_comfort_s", air.time_to_near_comfort_s()),
+            ("outside_near_comfort_k_s", air.outside_near_comfort_k_s()),
+            ("discomfort_afterwards_k", air.discomfort_afterwards_k()),
+            ("equivalent_time_to_near_comfort_s", equivalent.time_to_near_comfort_s()),
+            ("equivalent_outside_near_comfort_k_s", equivalent.outside_near_comfort_k_s()),
+            ("equivalent_discomfort_afterwards_k", equivalent.discomfort_afterwards_k()),
+            ("co2_above_1500_ppm_s", self.co2_above_highest_s),
+        ]
     }
 
     /// State of charge of equation (6) at the end of the last step [-].
@@ -252,6 +278,7 @@ impl Summary {
             ("co2_above_limit_ppm_s", self.co2_above_limit_ppm_s),
             ("highest_co2_ppm", self.highest_co2_ppm),
         ]);
+        add(&self.comfort());
         for (place, circuit) in layout.loops.iter().enumerate() {
             let (ends, value) = match circuit.side {
                 Side::Hot => ("highest", self.highest_supply_degc[place]),

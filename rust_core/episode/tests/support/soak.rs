@@ -115,6 +115,12 @@ impl Seen {
                 "energy_kwh_per_100_km" => of("distance_km") == Some(0.0),
                 "heat_pump_cop" => of("compressor_kwh").is_none_or(|energy_kwh| energy_kwh == 0.0),
                 "time_to_comfort_s" => of("comfortable_share") == Some(0.0),
+                "time_to_near_comfort_s" | "discomfort_afterwards_k" => {
+                    of("time_to_near_comfort_s").is_none()
+                }
+                "equivalent_time_to_near_comfort_s" | "equivalent_discomfort_afterwards_k" => {
+                    of("equivalent_time_to_near_comfort_s").is_none()
+                }
                 _ => false,
             };
             value.is_none() && !may_be_missing

@@ -1,5 +1,9 @@
 //! Equivalent temperature: that of a uniform room with still air in which a person loses as much heat (Madsen; ISO 14505-2).
 
+use crate::architecture::layout::CabinLayout;
+use crate::config::ZERO_CELSIUS_K;
+use crate::numerics::thermal_network::{Node, NodeValues};
+
 /// Warmth of clothes [clo] (assumed: indoor clothes in winter; ISO 9920).
 const CLOTHES_CLO: f64 = 1.0;
 
@@ -24,6 +28,14 @@ pub fn equivalent_temperature_degc(air_degc: f64, radiant_degc: f64, speed_m_s: 
     }
     let draught = (0.24 - 0.75 * speed_m_s.sqrt()) / (1.0 + CLOTHES_CLO);
     0.55 * air_degc + 0.45 * radiant_degc + draught * (36.5 - air_degc)
+}
+
+/// Equivalent temperature of a cabin [degC], its furnishings being what radiates, with air that its blower moves [kg/s].
+#[must_use]
+pub fn of_cabin(cabin: &CabinLayout, temperatures_k: &NodeValues, supply_kg_s: f64) -> f64 {
+    let degc = |node: Node| temperatures_k[node.index()] - ZERO_CELSIUS_K;
+    let radiant_degc = 0.5 * (degc(cabin.soft) + degc(cabin.hard));
+    equivalent_temperature_degc(degc(cabin.air), radiant_degc, air_speed_m_s(supply_kg_s))
 }
 
 #[cfg(test)]

@@ -1,0 +1,104 @@
+//! How a cabin comes near comfort and stays there: what a trip is judged by (`hp_gym/comfort_standard.py`).
+
+use crate::summary::COMFORT_TEMPERATURE_DEGC;
+use hp_plant::plant::CONTROL_PERIOD_S;
+use serde::{Deserialize, Serialize};
+
+/// Distance from 22 degC within which a cabin is near comfort [K]: from 18 degC on in the cold, down to 26 degC in heat.
+pub const NEAR_COMFORT_K: f64 = 4.0;
+
+/// Carbon dioxide that a room with ventilation should not exceed (DIN 1946-2:1994) [ppm].
+pub const CO2_HIGHEST_PPM: f64 = 1500.0;
+
+/// Running totals of one reading of the cabin's temperature.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Course {
+    elapsed_s: f64,
+    first_near_s: f64,
+    outside_k_s: f64,
+    afterwards_s: f64,
+    discomfort_afterwards_k_s: f64,
+}
+
+impl Default for Course {
+    fn default() -> Self {
+        Self {
+            elapsed_s: 0.0,
+            first_near_s: f64::NAN,
+            outside_k_s: 0.0,
+            afterwards_s: 0.0,
+            discomfort_afterwards_k_s: 0.0,
+        }
+    }
+}
+
+impl Course {
+    /// Adds a second that ended at a temperature.
+    #[inline]
+    pub fn add(&mut self, temperature_degc: f64) {
+        self.elapsed_s += CONTROL_PERIOD_S;
+        let deviation_k = (temperature_degc - COMFORT_TEMPERATURE_DEGC).abs();
+        self.outside_k_s += (deviation_k - NEAR_COMFORT_K).max(0.0) * CONTROL_PERIOD_S;
+        if self.first_near_s.is_nan() && deviation_k <= NEAR_COMFORT_K {
+            self.first_near_s = self.elapsed_s;
+        }
+        if !self.first_near_s.is_nan() {
+            self.afterwards_s += CONTROL_PERIOD_S;
+            self.discomfort_afterwards_k_s += deviation_k * CONTROL_PERIOD_S;
+        }
+    }
+
+    /// Time until the cabin is first near comfort [s]; not a number if it never is.
+    #[must_use]
+    pub fn time_to_near_comfort_s(&self) -> f64 {
+        self.first_near_s
+    }
+
+    /// Distance from near comfort over the whole trip, integrated [K s].
+    #[must_use]
+    pub fn outside_near_comfort_k_s(&self) -> f64 {
+        self.outside_k_s
+    }
+
+    /// Mean distance from 22 degC from when the cabin was first near comfort [K]; not a number if it never was.
+    #[must_use]
+    pub fn discomfort_afterwards_k(&self) -> f64 {
+        self.discomfort_afterwards_k_s / self.afterwards_s
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn course(temperatures_degc: &[f64]) -> Course {
+        let mut course = Course::default();
+        temperatures_degc.iter().for_each(|&degc| course.add(degc));
+        course
+    }
+
+    #[test]
+    fn a_cold_cabin_is_near_comfort_from_18_degc_and_a_hot_one_from_26() {
+        for temperatures_degc in [[10.0, 17.9, 18.0, 21.0], [34.0, 26.1, 26.0, 23.0]] {
+            let found = course(&temperatures_degc);
+            assert_eq!(found.time_to_near_comfort_s(), 3.0);
+            assert!((found.outside_near_comfort_k_s() - 8.1).abs() < 1e-12);
+            assert_eq!(found.discomfort_afterwards_k(), 2.5);
+        }
+    }
+
+    #[test]
+    fn a_cabin_that_starts_near_comfort_is_there_after_the_first_second_and_what_it_loses_counts() {
+        let found = course(&[20.0, 18.0, 16.0]);
+        assert_eq!(found.time_to_near_comfort_s(), 1.0);
+        assert_eq!(found.outside_near_comfort_k_s(), 2.0);
+        assert_eq!(found.discomfort_afterwards_k(), 4.0);
+    }
+
+    #[test]
+    fn a_cabin_that_never_comes_near_comfort_has_no_time_and_no_afterwards() {
+        let found = course(&[0.0, 10.0]);
+        assert!(found.time_to_near_comfort_s().is_nan() && found.discomfort_afterwards_k().is_nan());
+        assert_eq!(found.outside_near_comfort_k_s(), 26.0);
+    }
+}
