@@ -5,11 +5,15 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import hp_gym
 from hp_gym import _core
 from hp_gym.agents.training import configuration
+from hp_gym.comfort_standard import Verdict
 from hp_gym.studies.tuning import objective as goals
 from hp_gym.studies.tuning import rule_choices, search
 from hp_gym.studies.tuning.ambient_bands import BANDS, Band
@@ -52,6 +56,22 @@ def test_search_repeats_with_its_seed_and_never_falls_behind_where_it_starts() -
         assert found[0] == found[1]
         assert found[0].score >= found[0].paper_score
         assert goal.score(found[0].choices) == found[0].score
+
+
+def test_held_to_the_standard_a_cold_cabin_costs_more_than_it_can_save() -> None:
+    """Pooled, a cabin 5 K colder only costs what it is less comfortable than the paper's."""
+    band, heated = Band(0, 10), {**rule_choices.MODERN, "strategy.battery": "heat"}
+    cold = {**heated, "controller.cabin_set_point_degc": 17.0}
+    with objective(band, 8, 0, comfort="standard") as goal:
+        assert goal.score(heated) - goal.score(cold) > 0.4 * goals.FAILED_TRIP_POINTS
+
+
+@given(st.lists(st.floats(-1.0, 5.0), min_size=1, max_size=20))
+def test_a_failed_trip_counts_half_to_whole_and_one_that_passes_not_at_all(lateness: list[float]) -> None:
+    nothing = np.zeros(len(lateness))
+    verdict = Verdict(np.array(lateness), nothing, nothing, nothing, nothing)
+    failed = float(np.mean(~verdict.passes))
+    assert 0.5 * failed <= goals.failed_share(verdict) <= failed
 
 
 @pytest.mark.parametrize("name", ["hpcu-best-mode", "hpcu-tuned"])
