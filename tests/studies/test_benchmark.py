@@ -11,13 +11,13 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import hp_gym
-from hp_gym import transactions
+from hp_gym import toml_files, transactions
 from hp_gym.agents.controllers import resolve
 from hp_gym.cli.app import app
 from hp_gym.studies.benchmark import grid, matched, results_folder, summary
 from hp_gym.studies.benchmark.drive import drive, trajectories
 from hp_gym.studies.benchmark.grid import GridError
-from hp_gym.studies.benchmark.results import FRONT_COLUMNS, IDENTITY, KPIS
+from hp_gym.studies.benchmark.results import FRONT_COLUMNS, IDENTITY, KPIS, VERDICTS
 
 GRID = """
 description = "Two climates, one short cycle"
@@ -121,8 +121,15 @@ def runs(done: dict[str, Any], place: Path) -> pd.DataFrame:
 
 
 def test_every_controller_drives_every_scenario(runs: pd.DataFrame) -> None:
-    assert list(runs.columns) == [*IDENTITY, *KPIS]
-    assert set(runs["controller"]) == {"hpcu", "hpcu-tuned", "off", "bench_classes:Same", "random"}
+    assert list(runs.columns) == [*IDENTITY, *KPIS, *VERDICTS]
+    assert set(runs["controller"]) == {
+        "hpcu",
+        "hpcu-modern",
+        "hpcu-tuned",
+        "off",
+        "bench_classes:Same",
+        "random",
+    }
     assert all(len(group) == group["scenario"].nunique() == 4 for _, group in runs.groupby("controller"))
     assert set(runs["end_reason"]) == {"arrived"}
     assert dict(zip(runs["scenario"], runs["band"], strict=True))["30-nedc-dark"] == "warm"
@@ -226,6 +233,55 @@ def test_the_same_command_gives_the_same_bytes(
         assert (tmp_path / "again" / name).read_bytes() == (place / "out" / name).read_bytes(), name
 
 
+def test_the_reference_passes_every_trip_and_a_controller_that_is_the_hpcu_passes_where_it_does(
+    done: dict[str, Any], runs: pd.DataFrame
+) -> None:
+    passes = runs.pivot(index="scenario", columns="controller", values="passes")
+    assert passes["hpcu-modern"].all()
+    assert not passes["off"].any()
+    assert passes["bench_classes:Same"].to_list() == passes["hpcu"].to_list()
+    for name, rates in done["comfort"]["controllers"].items():
+        assert rates["passed_pct"] == 100.0 * passes[name].mean()
+        for band, shares in rates["bands"].items():
+            own = runs[(runs["controller"] == name) & (runs["band"] == band)]
+            assert shares["passed_pct"] == 100.0 * own["passes"].mean()
+
+
+def test_energy_where_both_pass_can_be_read_off_the_runs(done: dict[str, Any], runs: pd.DataFrame) -> None:
+    """A class and rules get the same rows; the class here is the HPCU."""
+    best = done["headline"]["best_rule"]
+    wide = runs.pivot(index="scenario", columns="controller", values=["attributable_energy_kwh", "passes"])
+    for name in ("bench_classes:Same", "hpcu-modern"):
+        gain = done["paired_gains"].get(f"{name}_vs_{best}")
+        if gain is None:
+            assert name == best
+            continue
+        both = wide["passes"][name].astype(bool) & wide["passes"][best].astype(bool)
+        energy_kwh = wide["attributable_energy_kwh"][both].sum()
+        assert gain["pairs"] == both.sum()
+        change_pct = 100.0 * (energy_kwh[name] / energy_kwh[best] - 1.0) if both.any() else None
+        assert gain["by_credit"]["0"]["attributable_energy_pct"] == pytest.approx(change_pct)
+    twins = done["paired_gains"]["bench_classes:Same_vs_hpcu"]
+    assert twins["attributable_energy_pct"] in {0.0, None}
+    assert set(done["headline"]) >= {"learned_vs_best_rule", "best_rule_vs_hpcu", "reasons"}
+    for name in ("learned_vs_best_rule", "best_rule_vs_hpcu"):
+        assert (done["headline"][name] is None) == (done["headline"]["reasons"][name] is not None)
+
+
+def test_the_references_own_file_may_be_named_but_no_other_of_its_name(
+    benchmark: Callable[..., Result], tmp_path: Path
+) -> None:
+    file = tmp_path / "hpcu-modern.toml"
+    file.write_text(hp_gym._core.config_text("controller", "hpcu-modern"), encoding="utf-8")
+    assert benchmark(file, out=tmp_path / "out").exit_code == 0
+    runs = pd.read_parquet(tmp_path / "out" / results_folder.RUNS)
+    assert (runs["controller"] == "hpcu-modern").sum() == 4
+    file.write_text('base = "hpcu-modern"\nheating_recirculation = 0.0\n', encoding="utf-8")
+    result = benchmark(file, out=tmp_path / "out")
+    assert result.exit_code == 2
+    assert all(word in result.stderr for word in (str(file), "comfort", "another name"))
+
+
 def test_stranded_trips_are_counted_and_leave_no_gain(
     benchmark: Callable[..., Result], tmp_path: Path
 ) -> None:
@@ -235,8 +291,9 @@ def test_stranded_trips_are_counted_and_leave_no_gain(
     runs = pd.read_parquet(tmp_path / results_folder.RUNS)
     stranded = int(runs.loc[runs["controller"] == "bench_classes:Thirsty", "stranded"].sum())
     assert stranded > 0
-    assert told["stranded_trips"] == {"hpcu": 0, "hpcu-tuned": 0, "bench_classes:Thirsty": stranded}
-    assert len(runs) == 12
+    rules = dict.fromkeys(("hpcu", "hpcu-modern", "hpcu-tuned"), 0)
+    assert told["stranded_trips"] == {**rules, "bench_classes:Thirsty": stranded}
+    assert len(runs) == 16
     gain = told["gains"]["bench_classes:Thirsty_vs_hpcu"]
     assert gain["attributable_energy_pct"] is None
     assert "stranded" in result.stdout
@@ -377,7 +434,8 @@ def test_front_settings_move_ambient_bands_too(tmp_path: Path) -> None:
     )
     made = fronts.settings(front, tmp_path / "made")
     written = [
-        fronts._values(setting.controller.environment["overrides"]["scenario.controller"]) for setting in made
+        toml_files.merged("controller", setting.controller.environment["overrides"]["scenario.controller"])
+        for setting in made
     ]
     assert [values["cabin_set_point_degc"] for values in written] == [20.0, 20.0]
     assert [values["htc_set_point_degc"] for values in written] == [40.0, 80.0]

@@ -95,7 +95,7 @@ def benchmark(tmp_path_factory):
         for seed, cabin_degc in enumerate((21.0, 20.0))
     ]
     learned = [replace(each, learned=True) for each in [*seeds, rules(NASTY, "hpcu", COOLER_HTC)]]
-    first = [each for name in ("off", "ptc-only", "hpcu") for each in resolve(name)]
+    first = [each for name in ("off", "ptc-only", "hpcu", "hpcu-modern") for each in resolve(name)]
     return benchmark_of([*first, *learned], tmp_path_factory.mktemp("benchmark"))
 
 
@@ -111,7 +111,7 @@ def page(text):
 
 @pytest.fixture(scope="module")
 def only_rules(tmp_path_factory):
-    return benchmark_of(resolve("hpcu"), tmp_path_factory.mktemp("rules"))
+    return benchmark_of([*resolve("hpcu"), *resolve("hpcu-modern")], tmp_path_factory.mktemp("rules"))
 
 
 def resolve_pointer(data, pointer):

@@ -5,11 +5,15 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import hp_gym
 from hp_gym import _core
 from hp_gym.agents.training import configuration
+from hp_gym.comfort_standard import Verdict
 from hp_gym.studies.optimise import search_loop
 from hp_gym.studies.tuning import objective as goals
 from hp_gym.studies.tuning import rule_choices, rule_families, search
@@ -73,6 +77,23 @@ def test_rules_where_a_search_starts_drive_as_their_file_does(tmp_path: Path) ->
     ours = hp_gym.simulate("ours/commute-minus5", str(file), changes)
     theirs = hp_gym.simulate("ours/commute-minus5", "hpcu-modern", changes)
     assert ours.summary == pytest.approx(theirs.summary, rel=0.0, nan_ok=True)
+
+
+def test_held_to_the_standard_a_cold_cabin_costs_more_than_it_can_save() -> None:
+    """Pooled, a cabin 5 K colder only costs what it is less comfortable than the paper's."""
+    band = Band(0, 10)
+    heated = rule_families.HPCU.start(band).changed({"strategy.battery": "heat"})
+    cold = heated.changed({"controller.cabin_set_point_degc": 17.0})
+    with objective(band, 8, 0, comfort="standard") as goal:
+        assert goal.score(heated) - goal.score(cold) > 0.4 * goals.FAILED_TRIP_POINTS
+
+
+@given(st.lists(st.floats(-1.0, 5.0), min_size=1, max_size=20))
+def test_a_failed_trip_counts_half_to_whole_and_one_that_passes_not_at_all(lateness: list[float]) -> None:
+    nothing = np.zeros(len(lateness))
+    verdict = Verdict(np.array(lateness), nothing, nothing, nothing, nothing)
+    failed = float(np.mean(~verdict.passes))
+    assert 0.5 * failed <= goals.failed_share(verdict) <= failed
 
 
 @pytest.mark.parametrize("name", ["hpcu-best-mode", "hpcu-tuned"])

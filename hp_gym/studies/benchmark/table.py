@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from rich.table import Table
 
+from hp_gym.agents.controllers.learned import ABLATION
 from hp_gym.studies.benchmark.matched import MOST_COMFORTABLE
 
 if TYPE_CHECKING:
@@ -122,6 +123,8 @@ def _paired_gains(summary: Mapping[str, Any]) -> Table:
     for heading in ("energy\n%", "95 % interval\n%", "charged\n%", "pairs"):
         table.add_column(heading, justify="right", no_wrap=True)
     for name, gain in summary["paired_gains"].items():
+        if name.startswith(ABLATION):
+            continue
         table.add_row(
             name.replace("_vs_", " vs "),
             _signed(gain["attributable_energy_pct"], 1),
