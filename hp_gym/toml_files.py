@@ -1,7 +1,7 @@
 """TOML within bounds: how large a file may be and how deep its tables."""
 
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -99,7 +99,7 @@ def chain(kind: str, name: str) -> Iterator[tuple[str, dict[str, Any]]]:
         yield file, tables
         if base is None:
             return
-        file = _beside(kind, file, base)
+        file = beside(kind, file, base)
     message = f"{name}: the chain of `base` files is too long or closed"
     raise FileError(message)
 
@@ -112,8 +112,13 @@ def merged(kind: str, name: str) -> dict[str, Any]:
         ConfigurationError: There is no such file.
         OSError: A file cannot be read.
     """
+    return overlaid(tables for _, tables in chain(kind, name))
+
+
+def overlaid(layers: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    """Returns tables laid over each other, the first on top."""
     values: dict[str, Any] = {}
-    for _, tables in reversed(list(chain(kind, name))):
+    for tables in reversed(list(layers)):
         values = _over(values, tables)
     return values
 
@@ -126,7 +131,14 @@ def _over(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
     return both
 
 
-def _beside(kind: str, file: str, base: str) -> str:
+def beside(kind: str, file: str, base: str) -> str:
+    """Returns what a file means by a name or path: a path counts from the folder of that file.
+
+    Args:
+        kind: Kind of what is named, in words.
+        file: Name or path of the file that names it.
+        base: Name or path that stands there.
+    """
     if base in _core.names(kind) or Path(base).suffix != ".toml" or file in _core.names(kind):
         return base
     return str(Path(file).parent / base)

@@ -328,6 +328,24 @@ def test_wrong_configurations_are_told_in_a_line(
     assert not (tmp_path / "run").exists()
 
 
+def test_paths_in_a_configuration_count_from_its_folder(tmp_path: Path) -> None:
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    (inner / "below.toml").write_text(
+        'base = "ppo"\n[environment]\ndistribution = "mine.toml"\n[imitation]\nteacher = "hpcu"\n',
+        encoding="utf-8",
+    )
+    (tmp_path / "above.toml").write_text(
+        'base = "inner/below.toml"\n[validation]\ndistribution = "other.toml"\n', encoding="utf-8"
+    )
+    loaded = configuration.load(str(tmp_path / "above.toml"))
+    assert loaded.environment.distribution == str(inner / "mine.toml")
+    assert loaded.validation.distribution == str(tmp_path / "other.toml")
+    assert isinstance(loaded, configuration.PPOTraining)
+    assert loaded.imitation is not None
+    assert loaded.imitation.teacher == "hpcu"
+
+
 def test_a_configuration_names_another_as_its_base(config: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.toml"
     other.write_text(f'base = "{config}"\n[hyperparameters]\nn_epochs = 5\n')

@@ -298,6 +298,17 @@ class SACTraining(_Common):
         return self
 
 
+_NAMED: Final = (
+    ("environment", "distribution", "distribution of episodes"),
+    ("environment", "vehicle", "vehicle"),
+    ("environment", "reward", "reward"),
+    ("validation", "distribution", "distribution of episodes"),
+    ("validation", "reward", "reward"),
+    ("comfort_constraint", "rules", "controller"),
+    ("imitation", "teacher", "controller"),
+)
+"""Keys whose value is the name or path of a file, with the kind of that file."""
+
 Training: TypeAlias = PPOTraining | MaskablePPOTraining | RecurrentPPOTraining | SACTraining
 
 _ADAPTER: Final[TypeAdapter[Training]] = TypeAdapter(Annotated[Training, Field(discriminator="algorithm")])
@@ -353,21 +364,22 @@ def read(path: Path) -> Training:
 
 
 def _merged(name: str) -> dict[str, Any]:
-    whole: dict[str, Any] = {}
     try:
         files = list(toml_files.chain("training configuration", name))
     except FileError as error:
         raise TrainingConfigurationError(str(error)) from error
-    for _, tables in reversed(files):
-        whole = _merge(whole, tables)
-    return whole
+    return toml_files.overlaid(_with_paths(file, tables) for file, tables in files)
 
 
-def _merge(whole: dict[str, Any], part: dict[str, Any]) -> dict[str, Any]:
-    for key, value in part.items():
-        inner = whole.get(key)
-        whole[key] = _merge(inner, value) if isinstance(inner, dict) and isinstance(value, dict) else value
-    return whole
+def _with_paths(file: str, tables: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a file; paths that count from its folder count from the working folder then."""
+    found = dict(tables)
+    for section, key, kind in _NAMED:
+        values = found.get(section)
+        name = values.get(key) if isinstance(values, dict) else None
+        if isinstance(values, dict) and isinstance(name, str):
+            found[section] = {**values, key: toml_files.beside(kind, file, name)}
+    return found
 
 
 def _set(name: str, tables: dict[str, Any], change: str) -> None:
