@@ -1,7 +1,7 @@
 //! One environment.
 
 use crate::actions::{self, Checked};
-use crate::errors::{ConfigurationError, gymnasium_error, to_python};
+use crate::errors::{self, ConfigurationError, gymnasium_error, to_python};
 use crate::scalars::float64;
 use crate::vehicles::{ActuatorTuple, DEFAULT_ARCHITECTURE, SignalNames, action_tuple, layout_dict};
 use hp_episode::action::{ActionTable, GROUPS};
@@ -180,23 +180,13 @@ impl Episode {
     }
 
     fn require_open(&self, py: Python<'_>) -> PyResult<()> {
-        if self.closed {
-            return Err(gymnasium_error(
-                py,
-                "ClosedEnvironmentError",
-                "this environment was closed; make another one",
-            ));
-        }
-        Ok(())
+        errors::require_open(py, self.closed)
     }
 
     fn require_begun(&self, py: Python<'_>) -> PyResult<()> {
         self.require_open(py)?;
         self.inner.require_sound().map_err(to_python)?;
-        if !self.inner.begun() {
-            return Err(gymnasium_error(py, "ResetNeeded", "call reset() first"));
-        }
-        Ok(())
+        errors::require_begun(py, self.inner.begun())
     }
 }
 

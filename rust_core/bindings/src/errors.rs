@@ -45,3 +45,17 @@ pub fn gymnasium_error(py: Python<'_>, name: &str, message: &str) -> PyErr {
     let raised = py.import("gymnasium.error").and_then(|module| module.getattr(name)?.call1((message,)));
     raised.map_or_else(|error| error, PyErr::from_value)
 }
+
+/// Refuses an environment that was closed.
+pub fn require_open(py: Python<'_>, closed: bool) -> PyResult<()> {
+    if closed {
+        let message = "this environment was closed; make another one";
+        return Err(gymnasium_error(py, "ClosedEnvironmentError", message));
+    }
+    Ok(())
+}
+
+/// Refuses an environment without a trip.
+pub fn require_begun(py: Python<'_>, begun: bool) -> PyResult<()> {
+    if begun { Ok(()) } else { Err(gymnasium_error(py, "ResetNeeded", "call reset() first")) }
+}

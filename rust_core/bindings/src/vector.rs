@@ -5,7 +5,7 @@ use crate::episode::{
     NarrowRow, ObservedRow, by_name, clipped_shares, facts_dict, kpis, looked, mask_of, narrow_rows,
     observed_row, once, setup, speeds_m_s, step_info,
 };
-use crate::errors::{ConfigurationError, gymnasium_error, to_python};
+use crate::errors::{self, ConfigurationError, gymnasium_error, to_python};
 use crate::vehicles::{ActuatorTuple, SignalNames, action_tuple, layout_dict};
 use hp_episode::episode::Episode;
 use hp_episode::guard::{Guarded, done};
@@ -103,23 +103,13 @@ fn check_counts(scenarios: &Names, distributions: &Names, vehicles: &Names, thre
 
 impl Vector {
     fn require_open(&self, py: Python<'_>) -> PyResult<()> {
-        if self.closed {
-            return Err(gymnasium_error(
-                py,
-                "ClosedEnvironmentError",
-                "this environment was closed; make another one",
-            ));
-        }
-        Ok(())
+        errors::require_open(py, self.closed)
     }
 
     fn require_ready(&self, py: Python<'_>) -> PyResult<()> {
         self.require_open(py)?;
         self.inner.require_sound().map_err(to_python)?;
-        if !self.inner.all_begun() {
-            return Err(gymnasium_error(py, "ResetNeeded", "call reset() first"));
-        }
-        Ok(())
+        errors::require_begun(py, self.inner.all_begun())
     }
 
     /// Whether no trip is over that must be reset by hand.
