@@ -197,6 +197,16 @@ def test_the_best_rule_is_the_cheapest_of_those_that_pass_in_every_band() -> Non
     assert headline["best_rule"] == "mine"
     assert headline["best_rule_vs_hpcu"]["attributable_energy_pct"] == pytest.approx(-100.0 / 3.0)
     assert headline["learned_vs_best_rule"]["attributable_energy_pct"] == pytest.approx(-25.0)
+    assert headline["rests_on"]["learned_vs_best_rule"] == {"pairs": 24, "bands_without_pairs": []}
+
+
+def test_a_headline_names_the_bands_that_it_says_nothing_of() -> None:
+    cold = [place for place, scenario in enumerate(GRID.scenarios) if scenario.band.name == "cold"]
+    runs = [driven("hpcu", 3.0, fails=cold), driven("hpcu-modern", 2.0), driven("ppo", 2.1)]
+    headline = figures(*runs)["headline"]
+    assert headline["best_rule_vs_hpcu"]["passed_pct"] == 100.0
+    assert headline["rests_on"]["best_rule_vs_hpcu"] == {"pairs": 12, "bands_without_pairs": ["cold"]}
+    assert headline["rests_on"]["learned_vs_best_rule"] is None
 
 
 def test_without_rules_that_pass_there_is_no_best_rule_and_it_says_why() -> None:

@@ -72,12 +72,15 @@ class Claims:
         }
         told: dict[str, Any] = {"best_rule": best, "learned": learned}
         reasons: dict[str, str | None] = {}
+        rests_on: dict[str, dict[str, Any] | None] = {}
         for name, (controller, rival, missing) in pairs.items():
             same = f"the best rule is `{rival}` itself" if controller == rival else None
             gain = gains.get(f"{controller}_vs_{rival}", {"objections": []})
             reasons[name] = missing or same or "; ".join(gain["objections"]) or None
-            told[name] = None if reasons[name] else {figure: gain[figure] for figure in CLAIMED}
-        return {**told, "reasons": reasons}
+            stands = reasons[name] is None
+            told[name] = {figure: gain[figure] for figure in CLAIMED} if stands else None
+            rests_on[name] = _evidence(gain) if stands else None
+        return {**told, "reasons": reasons, "rests_on": rests_on}
 
     def _learned(self) -> tuple[str | None, str | None]:
         """Who is claimed for, or why nobody is: the best must not be chosen on held-out trips."""
@@ -113,7 +116,7 @@ class Claims:
             self._judged(controller), self._judged(rival), self._dearest, self._bands, self.resamples
         )
         short = verdicts.failing_bands(rates[controller])
-        objections = [f"`{controller}` passes {_list(short)} of the trips"] if short else []
+        objections = [f"`{controller}` passes too few trips: {_list(short)}"] if short else []
         if gain["attributable_energy_pct"] is None:
             objections.append(f"there is no trip that both `{controller}` and `{rival}` pass")
         dearer = [
@@ -142,6 +145,12 @@ class Claims:
         return {
             band.name: np.array([scenario.band == band for scenario in scenarios]) for band in self.grid.bands
         }
+
+
+def _evidence(gain: Mapping[str, Any]) -> dict[str, Any]:
+    """What a claim rests on: pairs, and the bands without any, of which it says nothing."""
+    empty = [name for name, band in gain["bands"].items() if not band["pairs"]]
+    return {"pairs": gain["pairs"], "bands_without_pairs": empty}
 
 
 def _list(shares: Mapping[str, float]) -> str:
