@@ -19,18 +19,14 @@ class Quantity:
     """Something that can be measured.
 
     Attributes:
-        name: Name, with its unit.
+        name: Name with its unit, without `measured_`.
         label: Name for people.
         unit: Unit for people.
-        lowest: What is lower is no such value in this unit.
-        highest: What is higher likewise.
     """
 
     name: str
     label: str
     unit: str
-    lowest: float
-    highest: float
 
     @property
     def column(self) -> str:
@@ -38,13 +34,13 @@ class Quantity:
         return f"measured_{self.name}"
 
 
-BATTERY_POWER: Final = Quantity("battery_power_w", "Battery power", "W", -1e6, 1e6)
+BATTERY_POWER: Final = Quantity("battery_power_w", "Battery power", "W")
 """At the terminals, discharging positive."""
-HEATER_POWER: Final = Quantity("heater_power_w", "Heater power", "W", -1e5, 1e5)
+HEATER_POWER: Final = Quantity("heater_power_w", "Heater power", "W")
 """Electrical power of all heaters and of the compressor; pumps, blower and fans do not count."""
-CABIN_TEMPERATURE: Final = Quantity("cabin_temperature_degc", "Cabin temperature", "°C", -60.0, 100.0)
+CABIN_TEMPERATURE: Final = Quantity("cabin_temperature_degc", "Cabin temperature", "°C")
 """Of the cabin's air."""
-BATTERY_TEMPERATURE: Final = Quantity("battery_temperature_degc", "Battery temperature", "°C", -60.0, 100.0)
+BATTERY_TEMPERATURE: Final = Quantity("battery_temperature_degc", "Battery temperature", "°C")
 """Of the cells, in the mean."""
 
 QUANTITIES: Final = (BATTERY_POWER, HEATER_POWER, CABIN_TEMPERATURE, BATTERY_TEMPERATURE)

@@ -3,7 +3,10 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
+import numpy as np
+
 from hp_gym.studies import car_settings
+from hp_gym.studies.csv_columns import Columns
 from hp_gym.studies.replay import measured_quantities
 from hp_gym.studies.replay.measured_trace import MeasuredTrace
 
@@ -32,40 +35,44 @@ SETTINGS: Final = {
 }
 """Columns of a trace that a driver sets."""
 
+AMBIENT: Final = "ambient_degc"
+
 _HUMID_BELOW_DEGC: Final = 25.0
+_SUMMER_HUMIDITY: Final = 0.4
 
 
-def changes(
-    trace: MeasuredTrace, vehicle: str, layout: Mapping[str, Any], *, own_scenario: bool
-) -> dict[str, bool | float | str]:
-    """What of a scenario differs on a measured trip.
+def roles(columns: Columns) -> dict[str, str]:
+    """What a trace is for a scenario: its cycle, and its climate and settings where it has such columns."""
+    path = str(columns.path)
+    found = {"scenario.cycle": path}
+    if CLIMATE.keys() & set(columns.names):
+        found["scenario.climate.series"] = path
+    if SETTINGS.keys() & set(columns.names):
+        found["scenario.settings.series"] = path
+    return found
+
+
+def usual(columns: Columns, vehicle: str) -> dict[str, bool | float | str]:
+    """What stands for a scenario where the user gave none: as for the cars of `hp-gym validate`.
+
+    Args:
+        columns: The trace.
+        vehicle: Name or path of the car.
+    """
+    found: dict[str, bool | float | str] = car_settings.used(vehicle, {"climate_control": "auto"})
+    found["scenario.initial.state_of_charge_pct"] = STATE_OF_CHARGE_PCT
+    if AMBIENT in columns.names and columns.numbers(AMBIENT)[:1].max(initial=-np.inf) >= _HUMID_BELOW_DEGC:
+        found["scenario.climate.relative_humidity"] = _SUMMER_HUMIDITY
+    return found
+
+
+def first_temperatures(trace: MeasuredTrace, layout: Mapping[str, Any]) -> dict[str, float]:
+    """Initial temperatures of batteries, and of cabins with their furnishings, where they were measured.
 
     Args:
         trace: What was measured.
-        vehicle: Name or path of the car.
-        layout: What it is made of.
-        own_scenario: Whether the user gave a scenario: nothing but what the trace says is changed then.
+        layout: What the car is made of.
     """
-    path = str(trace.path)
-    found: dict[str, bool | float | str] = {} if own_scenario else _usual(trace, vehicle)
-    found["scenario.cycle"] = path
-    if CLIMATE.keys() & set(trace.columns):
-        found["scenario.climate.series"] = path
-    if SETTINGS.keys() & set(trace.columns):
-        found["scenario.settings.series"] = path
-    return found | _first_temperatures(trace, layout)
-
-
-def _usual(trace: MeasuredTrace, vehicle: str) -> dict[str, bool | float | str]:
-    """What stands for a scenario where the user gave none, as for the cars of `hp-gym validate`."""
-    usual = car_settings.used(vehicle, {"climate_control": "auto"})
-    usual["scenario.initial.state_of_charge_pct"] = STATE_OF_CHARGE_PCT
-    if trace.first_ambient_degc is not None and trace.first_ambient_degc >= _HUMID_BELOW_DEGC:
-        usual["scenario.climate.relative_humidity"] = 0.4
-    return usual
-
-
-def _first_temperatures(trace: MeasuredTrace, layout: Mapping[str, Any]) -> dict[str, float]:
     starts = (
         (measured_quantities.BATTERY_TEMPERATURE, measured_quantities.battery_members(layout)),
         (measured_quantities.CABIN_TEMPERATURE, measured_quantities.cabin_members(layout)),

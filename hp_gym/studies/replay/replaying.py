@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from hp_gym import _core, extras, later, notebooks
+from hp_gym.files import require_suffix
 from hp_gym.json_text import dumps
 from hp_gym.overrides import Overrides, assignments
 from hp_gym.simulation import Controller, simulate
+from hp_gym.studies import csv_columns
 from hp_gym.studies.replay import measured_quantities, measured_trace, replay_report, replay_scenario
 from hp_gym.studies.replay.measured_quantities import QUANTITIES, Channels
 from hp_gym.studies.replay.series_errors import SeriesError, series_errors
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from hp_gym.trajectory import Trajectory
 
 FIGURES: Final = "figures.json"
+SUFFIXES: Final = (".csv",)
 COMPARISON: Final = "comparison.csv"
 TRAJECTORY: Final = "trajectory.csv"
 
@@ -135,22 +138,28 @@ def replay(
         out: Folder for the figures, the comparison and all signals; none is written by default.
 
     Raises:
-        TraceError: The trace has no such values as its columns say.
-        ConfigurationError: Vehicle, scenario, controller, override or the rest of the trace is not accepted.
+        ColumnError: The trace is no table of numbers.
+        TraceError: What was measured is not in the unit of its column.
+        ConfigurationError: Vehicle, scenario, controller, an override or what is driven is not accepted.
         OSError: The trace cannot be read, or the folder not be written to; what was there before is intact.
     """
     name, changed = os.fspath(vehicle), assignments(overrides)
-    own = [change.removeprefix("vehicle.") for change in changed if change.startswith("vehicle.")]
-    layout = _core.vehicle_layout(name, own)
-    measured = measured_trace.read(trace)
-    given = replay_scenario.changes(measured, name, layout, own_scenario=scenario is not None)
-    trajectory = simulate(
-        replay_scenario.SCENARIO if scenario is None else scenario,
-        replay_scenario.CONTROLLER if scenario is None and controller is None else controller,
-        [*assignments(given), *changed],
-        vehicle=name,
-    )
-    compared = _compared(name, measured, trajectory, changed)
+    require_suffix(trace, SUFFIXES)
+    columns = csv_columns.read(Path(trace))
+    base, rules = scenario, controller
+    given: dict[str, bool | float | str] = {}
+    if base is None:
+        base = replay_scenario.SCENARIO
+        rules = replay_scenario.CONTROLLER if rules is None else rules
+        given |= replay_scenario.usual(columns, name)
+    given |= replay_scenario.roles(columns)
+    # Refuses a trace that cannot be driven before anything of it is used.
+    known = None if callable(rules) or rules is None else os.fspath(rules)
+    experiment = _core.Experiment(os.fspath(base), known, [*assignments(given), *changed], 1, name)
+    measured = measured_trace.of(columns)
+    given |= replay_scenario.first_temperatures(measured, experiment.layout())
+    trajectory = simulate(base, rules, [*assignments(given), *changed], vehicle=name)
+    compared = _compared(name, measured, trajectory, experiment.duration_s, changed)
     if out is not None:
         with new_contents(Path(out)) as folder:
             compared.write(folder)
@@ -158,10 +167,14 @@ def replay(
 
 
 def _compared(
-    vehicle: str, trace: measured_trace.MeasuredTrace, trajectory: Trajectory, changed: list[str]
+    vehicle: str,
+    trace: measured_trace.MeasuredTrace,
+    trajectory: Trajectory,
+    duration_s: int,
+    changed: list[str],
 ) -> Replay:
     """Compares the seconds that both have."""
-    seconds = 1 + min(trace.duration_s, len(trajectory) - 1)
+    seconds = 1 + min(duration_s, len(trajectory) - 1)
     measured = {name: values[:seconds] for name, values in trace.channels.items()}
     model = {name: values[:seconds] for name, values in measured_quantities.of_model(trajectory).items()}
     ambient_degc = float(trajectory["ambient_temperature_degc"][0])
@@ -174,7 +187,7 @@ def _compared(
         figures(measured, model),
         series_errors(measured, model),
         tuple(replay_scenario.notes(trace, ambient_degc, changed)),
-        tuple(_warnings(trace.duration_s, trajectory)),
+        tuple(_warnings(duration_s, trajectory)),
     )
 
 
