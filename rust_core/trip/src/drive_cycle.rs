@@ -1,8 +1,8 @@
 //! Drive cycles: speed against time.
 
 use crate::kinds::CYCLE;
-use hp_plant::config::library;
-use hp_plant::error::{PlantError, PlantResult};
+use crate::trace::Trace;
+use hp_plant::error::PlantResult;
 use std::sync::Arc;
 
 /// Speed at every full second. Parts of a cycle share its speeds.
@@ -14,70 +14,33 @@ pub struct DriveCycle {
     last_s: usize,
 }
 
-/// Latest time of a cycle [s].
-const LATEST_S: f64 = 1e6;
-
-/// Highest speed that a cycle may ask for [km/h].
-const HIGHEST_SPEED_KM_H: f64 = 300.0;
-
 impl DriveCycle {
     /// Loads a cycle by name or path.
     ///
     /// # Errors
-    /// Unknown name, or a file that is no cycle.
+    /// Unknown name, or a file that is no trace with a speed.
     pub fn load(name: &str) -> PlantResult<Self> {
-        Self::from_csv(name, &library::text(CYCLE, name)?)
+        Self::of(&Trace::load(CYCLE, name)?)
     }
 
-    /// Reads `time_s,speed_km_h` rows (comment lines start with `#`) and interpolates to full seconds.
+    /// Reads the text of a trace that has a speed.
     ///
     /// # Errors
-    /// A row that is not two numbers, times that do not rise from 0 or go too far, speeds out of range, less than a second.
+    /// It is no trace (see [`Trace::from_csv`]), or has no speed.
     pub fn from_csv(name: &str, text: &str) -> PlantResult<Self> {
-        let mut points: Vec<(f64, f64)> = Vec::new();
-        let lines =
-            text.lines().enumerate().filter(|(_, line)| !line.starts_with('#') && !line.trim().is_empty());
-        for (number, line) in lines.skip(1) {
-            let syntax = |what: String| PlantError::Syntax {
-                file: name.to_owned(),
-                message: format!("line {}: {what}", number + 1),
-            };
-            let (time, speed) = line
-                .split_once(',')
-                .and_then(|(time, speed)| Some((time.trim().parse().ok()?, speed.trim().parse().ok()?)))
-                .ok_or_else(|| syntax(format!("`{line}` is not `time_s,speed_km_h`")))?;
-            let expected = points.last().map_or(time == 0.0, |&(last, _): &(f64, f64)| time > last);
-            if !expected {
-                return Err(syntax(format!("time {time} s must be 0 in the first row and rise from there")));
-            }
-            if time > LATEST_S {
-                return Err(syntax(format!("time {time} s must be at most {LATEST_S}")));
-            }
-            if !(0.0..=HIGHEST_SPEED_KM_H).contains(&speed) {
-                return Err(syntax(format!("speed {speed} km/h must be between 0 and {HIGHEST_SPEED_KM_H}")));
-            }
-            points.push((time, speed));
-        }
-        if points.len() < 2 {
-            return Err(PlantError::Syntax {
-                file: name.to_owned(),
-                message: "a cycle needs at least two rows of `time_s,speed_km_h`".into(),
-            });
-        }
-        let (times, speeds): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
-        let end_s = times[times.len() - 1].floor() as usize;
-        if end_s == 0 {
-            return Err(PlantError::Syntax {
-                file: name.to_owned(),
-                message: format!("a cycle of {} s has no full second", times[times.len() - 1]),
-            });
-        }
-        let table = hp_plant::numerics::interpolation::LinearTable::new(&times, &speeds);
+        Self::of(&Trace::from_csv(name, text)?)
+    }
+
+    /// The cycle of a trace; columns that tell of other things do not matter.
+    ///
+    /// # Errors
+    /// It has no speed.
+    pub fn of(trace: &Trace) -> PlantResult<Self> {
         Ok(Self {
-            name: name.into(),
-            all_speeds_m_s: (0..=end_s).map(|second| table.at(second as f64) / 3.6).collect(),
+            name: Arc::clone(trace.name()),
+            all_speeds_m_s: trace.speeds_m_s()?,
             first_s: 0,
-            last_s: end_s,
+            last_s: trace.duration_s(),
         })
     }
 

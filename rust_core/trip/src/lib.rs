@@ -14,3 +14,4 @@ pub mod run;
 pub mod scenario;
 pub mod strategy;
 pub mod summary;
+pub mod trace;

@@ -203,9 +203,10 @@ fn impossible_tables_are_told_with_file_line_and_rule() {
         assert!(message.contains("mine.csv") && message.contains("mine.toml"), "{message}");
         assert!(words.iter().all(|word| message.contains(word)), "{message}");
     }
-    for (rows, words) in
-        [("0,0\n1,-3", ["line 3", "-3 km/h must be between"]), ("0,0\n0,3", ["line 3", "rise"])]
-    {
+    for (rows, words) in [
+        ("0,0\n1,-3", ["line 3", "`speed_km_h` is -3, but must be between"]),
+        ("0,0\n0,3", ["line 3", "rise"]),
+    ] {
         let text = format!("time_s,speed_km_h\n{rows}\n");
         let message = DriveCycle::from_csv("mine.csv", &text).expect_err("refused").to_string();
         assert!(

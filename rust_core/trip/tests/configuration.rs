@@ -152,13 +152,16 @@ fn cycles_out_of_bounds_get_one_clear_error() {
         DriveCycle::from_csv("mine.csv", &text).expect_err(rows).to_string()
     };
     for (rows, part) in [
-        ("0,0\n1e10,3", "line 3: time 10000000000 s must be at most 1000000"),
-        ("0,0\ninf,3", "line 3: time inf s must be at most"),
-        ("0,0\n1e300,3", "line 3: time 1"),
-        ("0,0\nnan,3", "line 3: time NaN s must be 0 in the first row and rise"),
-        ("0,0\n10,inf", "line 3: speed inf km/h must be between 0 and 300"),
-        ("0,0\n10,nan", "line 3: speed NaN km/h"),
-        ("0,0\n0,3", "line 3: time 0 s must"),
+        (
+            "0,0\n1e10,3",
+            "line 3: `time_s` is 10000000000, 10000000000 s after the first row, but must be at most 1000000",
+        ),
+        ("0,0\ninf,3", "line 3: `time_s` is inf, but must be a finite number"),
+        ("0,0\n1e300,3", "line 3: `time_s` is 1"),
+        ("0,0\nnan,3", "line 3: `time_s` is NaN, but must be a finite number"),
+        ("0,0\n10,inf", "line 3: `speed_km_h` is inf, but must be a finite number"),
+        ("0,0\n10,nan", "line 3: `speed_km_h` is NaN, but must be a finite number"),
+        ("0,0\n0,3", "line 3: `time_s` is 0 after 0: it stands there twice, but must rise"),
         ("0,0\n0.5,3", "has no full second"),
     ] {
         let message = told(rows);
