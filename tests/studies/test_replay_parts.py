@@ -22,7 +22,7 @@ def test_values_of_every_second_stay_as_they_are(values: list[float]) -> None:
     assert at_full_seconds(np.arange(len(values), dtype=float), np.array(values)).tolist() == values
 
 
-@given(st.lists(st.tuples(st.floats(0.05, 0.9), numbers), min_size=4, max_size=60))
+@given(st.lists(st.tuples(st.floats(0.05, 0.85), numbers), min_size=4, max_size=60))
 def test_means_of_fast_samples_keep_their_integral(samples: list[tuple[float, float]]) -> None:
     times_s = np.cumsum([0.0, *(step for step, _ in samples[1:])])
     values = np.array([value for _, value in samples])
@@ -106,9 +106,8 @@ def trace(folder: Path, *rows: str, head: str = "time_s,speed_km_h,measured_heat
 def test_measured_columns_are_read_from_a_trace_that_starts_anywhere(tmp_path: Path) -> None:
     path = trace(tmp_path, "100.5,0,5", "", "101.5,3,7", "102.5,4,8", "103.2,4,9")
     path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes().removeprefix(b"# a comment\n"))
-    found = measured_trace.read(path)
+    found = measured_trace.of(csv_columns.read(path))
     assert found.columns == ("time_s", "speed_km_h", "measured_heater_power_w")
-    assert found.duration_s == 2
     assert found.first == {"heater_power_w": 5.0}
     assert found.channels["heater_power_w"].tolist() == [5.0, 7.0, 8.0]
 
@@ -121,46 +120,28 @@ def test_measured_columns_are_read_from_a_trace_that_starts_anywhere(tmp_path: P
         (["0,0,1", "1,1,warm"], ["line 4", "is `warm`"]),
         (["0,0,1", "1,1"], ["line 4", "no cell for column `measured_heater_power_w`"]),
         (["0,0,1", "1,1,2,3"], ["line 4", "has 4 cells", "must have 3"]),
-        (["0,0,1", "2,1,2", "2,1,2"], ["line 5", "`time_s` is 2", "more than 2"]),
-        (["5,0,1", "4,1,2"], ["line 4", "`time_s` is 4", "more than 5"]),
-        (["0,0,1", "1,1,1e7"], ["line 4", "`measured_heater_power_w` is 1e+07", "-100000", "100000 W"]),
-        (["0,0,1"], ["has 1 rows", "at least 2"]),
-        ([], ["has 0 rows", "at least 2"]),
     ],
 )
-def test_measured_values_that_are_none_are_refused(rows: list[str], words: list[str], tmp_path: Path) -> None:
+def test_cells_that_are_no_numbers_are_refused(rows: list[str], words: list[str], tmp_path: Path) -> None:
     path = trace(tmp_path, *rows)
-    with pytest.raises(TraceError) as caught:
-        measured_trace.read(path)
+    with pytest.raises(ColumnError) as caught:
+        csv_columns.read(path).numbers("measured_heater_power_w")
     for word in (str(path), *words):
         assert word in str(caught.value)
 
 
-@pytest.mark.parametrize(
-    ("head", "rows", "words"),
-    [
-        ("speed_km_h,measured_heater_power_w", ["0,1"], ["no column `time_s`"]),
-        ("time_s,speed_km_h,measured_heating_power_w", ["0,0,1"], ["did you mean `measured_heater_power_w`"]),
-        ("time_s,time_s", ["0,0"], ["column `time_s` is there twice"]),
-        ("time_s,measured_cabin_temperature_degc", ["0,283.15", "1,283.2"], ["283.15", "-60 and 100 °C"]),
-        ("time_s,measured_battery_power_w", ["0,4.5", "1,12", "2,-20.1"], ["beyond 20.1 W", "is it in kW?"]),
-    ],
-)
-def test_columns_that_are_doubtful_are_refused(
-    head: str, rows: list[str], words: list[str], tmp_path: Path
-) -> None:
-    path = trace(tmp_path, *rows, head=head)
-    with pytest.raises(TraceError) as caught:
-        measured_trace.read(path)
-    for word in (str(path), *words):
-        assert word in str(caught.value)
+def test_names_that_are_doubtful_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(ColumnError, match="column `time_s` is there twice"):
+        csv_columns.read(trace(tmp_path, "0,0", head="time_s,time_s"))
+    columns = csv_columns.read(trace(tmp_path, "0,0,1"))
+    with pytest.raises(ColumnError, match="no column `speed_m_h`; did you mean `speed_km_h`"):
+        columns.numbers("speed_m_h")
 
 
-def test_a_trace_is_a_csv_file_that_is_there(tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError):
-        measured_trace.read(tmp_path / "none.csv")
-    with pytest.raises(ValueError, match=r"must end with one of \.csv"):
-        measured_trace.read(tmp_path / "trip.xlsx")
+def test_a_battery_whose_power_is_in_kilowatts_is_refused(tmp_path: Path) -> None:
+    path = trace(tmp_path, "0,4.5", "1,12", "2,-20.1", head="time_s,measured_battery_power_w")
+    with pytest.raises(TraceError, match=r"beyond 20\.1 W, .* is it in kW\?"):
+        measured_trace.of(csv_columns.read(path))
 
 
 def test_cells_may_be_empty_where_gaps_are_asked_for(tmp_path: Path) -> None:
