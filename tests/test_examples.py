@@ -105,7 +105,7 @@ SHOWN = {
         r"report: \d{6,} bytes",
     ],
     "18_replay": [
-        r"6\.\d km, arrived, \d\.\d\d kWh",
+        r"8\.0 km, arrived, \d\.\d\d kWh",
         r"from 3\.5 to -2\.0 degC, climbing \d\d m",
         r"propane: \d\d\.\d bar at most, the table allows 26",
         *(

@@ -328,3 +328,48 @@ def test_errors_are_of_their_kind(tmp_path: Path) -> None:
     path.write_text("time_s,speed_km_h\n0,0\n", encoding="utf-8")
     with pytest.raises(hp_gym.ConfigurationError):
         hp_gym.replay(CAR, path)
+
+
+def test_slope_weather_and_settings_of_a_trace_are_driven(driven: Replay, tmp_path: Path) -> None:
+    values = speeds()
+    seconds = np.arange(len(values), dtype=float)
+    metres = np.concatenate(([0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) / 3.6)))
+    columns = {
+        "time_s": seconds,
+        "speed_m_s": values / 3.6,
+        "elevation_m": 100.0 + 0.01 * metres,
+        "ambient_degc": np.interp(seconds, [0.0, 900.0], [-4.0, -1.0]),
+        "relative_humidity_pct": np.full(len(values), 80.0),
+        "cabin_set_point_degc": np.full(len(values), 17.0),
+    }
+    again = hp_gym.replay(CAR, write(tmp_path / "trip.csv", columns))
+    run = again.trajectory
+    assert run["ambient_temperature_degc"][[0, -1]] == pytest.approx([-4.0, -1.0], abs=0.01)
+    assert run["battery_temperature_degc"][0] == pytest.approx(-4.0)
+    assert run["cabin_temperature_degc"][-1] == pytest.approx(17.0, abs=0.5)
+    assert driven.trajectory["cabin_temperature_degc"][-1] > 20.0
+    # Potential energy of the climb, through motor and gear; braking gives less back.
+    mass_kg = 1762.0
+    climb_kwh = mass_kg * 9.81 * 0.01 * metres[-1] / 3.6e6
+    more_kwh = (
+        again.trajectory.summary["traction_energy_kwh"] - driven.trajectory.summary["traction_energy_kwh"]
+    )
+    assert climb_kwh < more_kwh < 1.3 * climb_kwh
+    assert any("Not in the trace, so the scenario's: sun, wind, occupants" in note for note in again.notes)
+    assert any("Not in the trace, so the controller's: blower, recirculation" in note for note in again.notes)
+
+
+def test_a_scenario_without_a_base_takes_the_settings_of_a_trace(tmp_path: Path) -> None:
+    (tmp_path / "own.toml").write_text(
+        "description = 'own'\nvehicle = 'compact_ev'\ncycle = 'nedc'\ncontroller = 'hpcu-modern'\n"
+        "climate = { ambient_temperature_degc = 4.0, solar_gain_w = 0.0, occupants = 1 }\n"
+        "initial = { state_of_charge_pct = 50.0 }\n"
+        "heat_demand = { cabin_w = 9000.0, battery_w = 0.0 }\n"
+        "strategy = { battery = 'isolate', climate_control = 'heat', ptc = true }\n",
+        encoding="utf-8",
+    )
+    values = speeds(300)
+    columns = {"time_s": np.arange(301.0), "speed_km_h": values, "cabin_set_point_degc": np.full(301, 12.0)}
+    path = write(tmp_path / "trip.csv", columns)
+    again = hp_gym.replay("compact_ev", path, scenario=tmp_path / "own.toml")
+    assert 11.0 < again.trajectory["cabin_temperature_degc"][-1] < 13.0

@@ -5,6 +5,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from hp_gym import toml_files
+from hp_gym.overrides import Value
 from hp_gym.studies import car_settings
 from hp_gym.studies.csv_columns import Columns
 from hp_gym.studies.replay import measured_quantities
@@ -41,25 +43,32 @@ _HUMID_BELOW_DEGC: Final = 25.0
 _SUMMER_HUMIDITY: Final = 0.4
 
 
-def roles(columns: Columns) -> dict[str, str]:
-    """What a trace is for a scenario: its cycle, and its climate and settings where it has such columns."""
+def roles(columns: Columns, scenario: str) -> dict[str, Value]:
+    """What a trace is for a scenario: its cycle, and its climate and settings where it has such columns.
+
+    Args:
+        columns: The trace.
+        scenario: Name or path of the scenario.
+    """
     path = str(columns.path)
-    found = {"scenario.cycle": path}
+    found: dict[str, Value] = {"scenario.cycle": path}
     if CLIMATE.keys() & set(columns.names):
         found["scenario.climate.series"] = path
     if SETTINGS.keys() & set(columns.names):
-        found["scenario.settings.series"] = path
+        # A key of a table that is not there would be refused.
+        has_table = any("settings" in tables for _, tables in toml_files.chain("scenario", scenario))
+        found |= {"scenario.settings.series": path} if has_table else {"scenario.settings": {"series": path}}
     return found
 
 
-def usual(columns: Columns, vehicle: str) -> dict[str, bool | float | str]:
+def usual(columns: Columns, vehicle: str) -> dict[str, Value]:
     """What stands for a scenario where the user gave none: as for the cars of `hp-gym validate`.
 
     Args:
         columns: The trace.
         vehicle: Name or path of the car.
     """
-    found: dict[str, bool | float | str] = car_settings.used(vehicle, {"climate_control": "auto"})
+    found: dict[str, Value] = car_settings.used(vehicle, {"climate_control": "auto"})
     found["scenario.initial.state_of_charge_pct"] = STATE_OF_CHARGE_PCT
     if AMBIENT in columns.names and columns.numbers(AMBIENT)[:1].max(initial=-np.inf) >= _HUMID_BELOW_DEGC:
         found["scenario.climate.relative_humidity"] = _SUMMER_HUMIDITY

@@ -13,7 +13,7 @@ import numpy as np
 from hp_gym import _core, extras, later, notebooks
 from hp_gym.files import require_suffix
 from hp_gym.json_text import dumps
-from hp_gym.overrides import Overrides, assignments
+from hp_gym.overrides import Overrides, Value, assignments
 from hp_gym.simulation import Controller, simulate
 from hp_gym.studies import csv_columns
 from hp_gym.studies.replay import measured_quantities, measured_trace, replay_report, replay_scenario
@@ -147,12 +147,12 @@ def replay(
     require_suffix(trace, SUFFIXES)
     columns = csv_columns.read(Path(trace))
     base, rules = scenario, controller
-    given: dict[str, bool | float | str] = {}
+    given: dict[str, Value] = {}
     if base is None:
         base = replay_scenario.SCENARIO
         rules = replay_scenario.CONTROLLER if rules is None else rules
         given |= replay_scenario.usual(columns, name)
-    given |= replay_scenario.roles(columns)
+    given |= replay_scenario.roles(columns, os.fspath(base))
     # Refuses a trace that cannot be driven before anything of it is used.
     known = None if callable(rules) or rules is None else os.fspath(rules)
     experiment = _core.Experiment(os.fspath(base), known, [*assignments(given), *changed], 1, name)

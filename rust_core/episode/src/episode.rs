@@ -257,7 +257,7 @@ impl Episode {
             return;
         };
         let Current { experiment, car, progress, .. } = current;
-        let disturbance = experiment.disturbance(progress.run.steps.saturating_sub(1));
+        let disturbance = experiment.last_disturbance(progress.run.steps, &progress.run.pace);
         let look = Look {
             view: View {
                 plant: &experiment.plant,

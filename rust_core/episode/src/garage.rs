@@ -66,6 +66,7 @@ impl Garage {
             return Ok(Arc::clone(experiment));
         }
         let mut experiment = Experiment::with_vehicle(name, vehicle, None, &self.overrides)?;
+        check_constant(name, &experiment)?;
         let vehicle = experiment.scenario.vehicle.clone();
         experiment.plant = Arc::clone(shelves.plants.entry(vehicle).or_insert(experiment.plant));
         let cycle = experiment.scenario.cycle.clone();
@@ -140,6 +141,7 @@ impl Garage {
             // Nearly all trips have the controller of their origin.
             rules: if rules == *origin.rules { Arc::clone(&origin.rules) } else { Arc::new(rules) },
             scenario: Arc::clone(&origin.scenario),
+            weather: None,
             air: trip.climate.air(),
             ambient_humidity_ratio: trip.climate.humidity_ratio(),
             climate: trip.climate,
@@ -150,6 +152,22 @@ impl Garage {
             controller_file: Arc::clone(&origin.controller_file),
             commander: Arc::clone(&origin.commander),
         })
+    }
+}
+
+/// Checks that a scenario leaves to episodes what they draw or decide.
+fn check_constant(name: &str, experiment: &Experiment) -> PlantResult<()> {
+    let scenario = &experiment.scenario;
+    let refused = |key: &str, allowed: &str| Err(Violation::new(key, "given", allowed).in_file(name));
+    if scenario.climate_series.is_some() {
+        return refused("climate.series", "must not be: the climate of an episode is constant");
+    }
+    match scenario.settings.first_key() {
+        Some(key) => refused(
+            &format!("settings.{key}"),
+            "must not be: in an episode the agent, or the controller where it decides, has these settings",
+        ),
+        None => Ok(()),
     }
 }
 

@@ -149,7 +149,7 @@ fn pull<'a>(
         spin_loss_w: conditions.spin_loss_w_s_m * speed_m_s,
         motor_share: vehicle.motor.available_share(REFERENCE_TEMPERATURE.kelvin()),
     };
-    (vehicle.body.road_load(start_m_s, end_m_s, CONTROL_PERIOD_S, &disturbance.air), powertrain)
+    (vehicle.body.road_load(start_m_s, end_m_s, CONTROL_PERIOD_S, &disturbance.road()), powertrain)
 }
 
 #[cfg(test)]

@@ -15,11 +15,11 @@ use crate::state::State;
 /// Temperature at which heat of condensation is taken: between 0 and 20 degC it changes by 1 % only [K].
 const CONDENSING_K: f64 = 283.15;
 
-/// Length and mean vehicle speed of a piece of a step.
+/// Length and mean air speed along the vehicle of a piece of a step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Moment {
     pub step_s: f64,
-    pub speed_m_s: f64,
+    pub air_speed_m_s: f64,
 }
 
 /// Air at the inlet of the cores [kg/kg].
@@ -116,7 +116,7 @@ pub(crate) fn step<S: Shape>(
         let air = &period.ventilation[place];
         let supply_kg_s = air.supply_rate_w_k / SPECIFIC_HEAT_J_KG_K;
         let blown_kg_s = period.demand.0[cabin.windscreen_row] * supply_kg_s;
-        let windscreen = parameters.windscreen.conditions(blown_kg_s, moment.speed_m_s);
+        let windscreen = parameters.windscreen.conditions(blown_kg_s, moment.air_speed_m_s);
         let cabin_k = state.temperatures_k[cabin.air.index()];
         let blown_k = if windscreen.blown_share > 0.0 {
             supply_k(sight, state, period, place, cabin)

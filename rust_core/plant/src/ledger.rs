@@ -14,6 +14,8 @@ use wide::f64x4;
 pub struct StoredEnergyChange {
     /// Kinetic energy.
     pub kinetic_j: f64,
+    /// Potential energy.
+    pub potential_j: f64,
     /// Chemical energy of the cells.
     pub chemical_j: f64,
     /// Energy in the RC pairs.
@@ -113,7 +115,7 @@ impl Ledger {
         step_s: f64,
     ) -> LedgerEntry {
         let stores_w = f64x4::new(
-            [stored.kinetic_j, stored.chemical_j, stored.polarisation_j, stored.heat_j]
+            [stored.kinetic_j + stored.potential_j, stored.chemical_j, stored.polarisation_j, stored.heat_j]
                 .map(|joule| joule / step_s),
         );
         let mut residuals_w = stores_w;

@@ -24,7 +24,7 @@ use crate::components::pump::PumpState;
 use crate::components::reachable_speed::{TractionSupply, reachable_speed_m_s};
 use crate::components::thermal_switch::ThermalSwitches;
 use crate::config::Violation;
-use crate::config::initial::InitialParameters;
+use crate::config::initial::{InitialParameters, WINDSCREEN};
 use crate::config::library::Override;
 use crate::config::vehicle::VehicleParameters;
 use crate::controls::{self, Controls, Period, Sight};
@@ -224,17 +224,9 @@ impl Plant {
     pub fn parked(&self, initial: &InitialParameters) -> State {
         let layout = self.layout();
         let soak_k = initial.soak_temperature_degc.kelvin();
-        let mut temperatures_k = [0.0; MAXIMUM_NODES];
-        temperatures_k[..layout.nodes.len()].fill(soak_k);
-        for member in &layout.members {
-            if let (Some(node), Some(value)) = (member.node, initial.of(&member.name)) {
-                temperatures_k[node.index()] = value.kelvin();
-            }
-        }
-        for cabin in &layout.cabins {
-            for part in [cabin.exhaust, cabin.soft, cabin.hard] {
-                temperatures_k[part.index()] = temperatures_k[cabin.air.index()];
-            }
+        let mut cabin_air = [CabinAir::parked(soak_k); CABIN_PLACES];
+        if let Some(windscreen) = initial.of(WINDSCREEN) {
+            cabin_air[0] = CabinAir::parked(windscreen.kelvin());
         }
         let mut pumps = [PumpState::default(); LOOP_PLACES];
         for (pump, parameters) in pumps.iter_mut().zip(&self.vehicle.loops) {
@@ -244,8 +236,8 @@ impl Plant {
             self.refrigeration.as_ref().map(|cycle| cycle.table().saturation_pressure_pa(soak_k));
         State {
             time_s: 0.0,
-            temperatures_k,
-            cabin_air: [CabinAir::parked(soak_k); CABIN_PLACES],
+            temperatures_k: parked_k(layout, initial),
+            cabin_air,
             battery: self.battery.rested(initial.state_of_charge_pct / 100.0),
             connected: [false; _],
             switches: ThermalSwitches::default(),
@@ -487,7 +479,8 @@ impl Plant {
         let flows = &mut record.flows;
         let mut drive = self.road(sight, state, &segment, flows);
         self.constant_loads::<S>(sight, period, flows);
-        let moment = air_side::Moment { step_s: segment.step_s, speed_m_s: segment.speed_m_s };
+        let air_speed_m_s = sight.disturbance.air_speed_m_s(segment.speed_m_s);
+        let moment = air_side::Moment { step_s: segment.step_s, air_speed_m_s };
         let blown_w_k = air_side::step::<S>(sight, state, period, moment, record);
         let flows = &mut record.flows;
 
@@ -501,7 +494,13 @@ impl Plant {
         let flows = &mut record.flows;
         let spare_w = left_w.max(0.0);
 
-        let conditions = self.conditions::<S>(sight, state, period, &blown_w_k, segment.speed_m_s);
+        let conditions = self.conditions::<S>(
+            sight,
+            state,
+            period,
+            &blown_w_k,
+            sight.disturbance.air_speed_m_s(segment.speed_m_s),
+        );
         let start_k = state.temperatures_k;
         let given = Given {
             capacities_j_k: &self.network.capacities_j_k,
@@ -525,7 +524,7 @@ impl Plant {
         let end_k = S::finish(planned, &factors, &given, flows);
 
         tamper(Stage::Ledger, flows);
-        let stored = self.stored_change(shape, state, &segment, &circuit, &battery.state, &end_k);
+        let stored = self.stored_change(sight, state, &segment, &circuit, &battery.state, &end_k);
         record.ledger = self.ledger.balance(shape.flows, flows, &stored, segment.step_s);
         (state.temperatures_k, state.battery) = (end_k, battery.state);
         (record.battery_voltage_v, record.battery_current_a) = (battery.voltage_v, battery.current_a);
@@ -601,7 +600,7 @@ impl Plant {
     fn pull(&self, sight: Sight<'_>, state: &State, segment: &Segment) -> (RoadLoad, Powertrain<'_>) {
         let vehicle = &self.vehicle;
         let Segment { step_s, start_m_s, end_m_s, speed_m_s } = *segment;
-        let road = vehicle.body.road_load(start_m_s, end_m_s, step_s, &sight.disturbance.air);
+        let road = vehicle.body.road_load(start_m_s, end_m_s, step_s, &sight.disturbance.road());
         let oil_k = state.temperatures_k[sight.shape.transmission.index()];
         let motor_k = state.temperatures_k[sight.shape.motor.index()];
         let powertrain = Powertrain {
@@ -624,6 +623,7 @@ impl Plant {
         flows[Flow::DRAG] = road.drag_power_w;
         flows[Flow::ROLLING] = road.rolling_power_w;
         flows[Flow::KINETIC] = road.kinetic_power_w;
+        flows[Flow::CLIMB] = road.climb_power_w;
         flows[Flow::WHEEL] = wheel_w;
         if let Some(driving) = driving {
             flows[Flow::MOTOR_LOSS] = driving.motor_loss_w;
@@ -659,16 +659,16 @@ impl Plant {
         state: &State,
         period: &'a Period,
         blown_w_k: &[f64; CABIN_PLACES],
-        speed_m_s: f64,
+        air_speed_m_s: f64,
     ) -> Conditions<'a> {
         let Sight { vehicle, parameters, shape, disturbance } = sight;
         let mut masses_w_k = parameters.masses_w_k;
-        masses_w_k[0] = vehicle.battery.plate.conductance_to_ambient_w_k(speed_m_s, &disturbance.air);
-        masses_w_k[1] = vehicle.motor.ambient_conductance_w_k(speed_m_s);
-        masses_w_k[2] = vehicle.transmission.ambient_conductance_w_k(speed_m_s);
+        masses_w_k[0] = vehicle.battery.plate.conductance_to_ambient_w_k(air_speed_m_s, &disturbance.air);
+        masses_w_k[1] = vehicle.motor.ambient_conductance_w_k(air_speed_m_s);
+        masses_w_k[2] = vehicle.transmission.ambient_conductance_w_k(air_speed_m_s);
         let mut cabins = [CabinConditions::default(); CABIN_PLACES];
         each!(S::cabins(shape) => |place, cabin| {
-            cabins[place] = cabin_conditions(sight, (place, cabin), state, period, speed_m_s);
+            cabins[place] = cabin_conditions(sight, (place, cabin), state, period, air_speed_m_s);
             cabins[place].panel_w_k += blown_w_k[place];
         });
         let mut conditions = Conditions {
@@ -831,7 +831,7 @@ impl Plant {
     #[inline(always)]
     fn stored_change(
         &self,
-        shape: &Indices<'_>,
+        sight: Sight<'_>,
         state: &State,
         segment: &Segment,
         circuit: &CircuitStep<'_>,
@@ -842,10 +842,12 @@ impl Plant {
         let capacities_j_k = &self.network.capacities_j_k;
         StoredEnergyChange {
             kinetic_j: body.kinetic_energy_j(segment.end_m_s) - body.kinetic_energy_j(segment.start_m_s),
+            potential_j: body
+                .potential_energy_j(&sight.disturbance.road(), segment.speed_m_s * segment.step_s),
             chemical_j: circuit.chemical_energy_gained_j(battery),
             polarisation_j: self.battery.polarisation_energy_j(battery)
                 - self.battery.polarisation_energy_j(&state.battery),
-            heat_j: heat_gained_j(shape.nodes, capacities_j_k, &state.temperatures_k, end_k),
+            heat_j: heat_gained_j(sight.shape.nodes, capacities_j_k, &state.temperatures_k, end_k),
         }
     }
 }
@@ -885,7 +887,7 @@ fn cabin_conditions(
     (place, cabin): (usize, &CabinLayout),
     state: &State,
     period: &Period,
-    speed_m_s: f64,
+    air_speed_m_s: f64,
 ) -> CabinConditions {
     let Sight { parameters, shape, disturbance, .. } = sight;
     let parameters = &parameters.cabins[place];
@@ -903,7 +905,35 @@ fn cabin_conditions(
         }
         None => ExhaustRecovery::default(),
     };
-    CabinConditions { ventilation, recovery, panel_w_k: parameters.panel_conductance_w_k(speed_m_s) }
+    CabinConditions { ventilation, recovery, panel_w_k: parameters.panel_conductance_w_k(air_speed_m_s) }
+}
+
+/// Temperatures of all nodes of a parked vehicle: soaked, then what is given of wholes, then what is given of their parts.
+fn parked_k(layout: &Layout, initial: &InitialParameters) -> NodeValues {
+    let mut temperatures_k = [0.0; MAXIMUM_NODES];
+    temperatures_k[..layout.nodes.len()].fill(initial.soak_temperature_degc.kelvin());
+    for member in &layout.members {
+        if let (Some(node), Some(value)) = (member.node, initial.of(&member.name)) {
+            temperatures_k[node.index()] = value.kelvin();
+        }
+    }
+    for cabin in &layout.cabins {
+        for part in [cabin.exhaust, cabin.soft, cabin.hard] {
+            temperatures_k[part.index()] = temperatures_k[cabin.air.index()];
+        }
+    }
+    for circuit in &layout.loops {
+        if let Some(value) = initial.of(&circuit.name) {
+            temperatures_k[circuit.supply.index()] = value.kelvin();
+            temperatures_k[circuit.back.index()] = value.kelvin();
+        }
+    }
+    for (temperature_k, node) in temperatures_k.iter_mut().zip(&layout.nodes) {
+        if let Some(value) = initial.of(&node.stem) {
+            *temperature_k = value.kelvin();
+        }
+    }
+    temperatures_k
 }
 
 /// What the compressor may have.

@@ -223,6 +223,12 @@ impl SignalTable {
             })
             .within(-40.0, 50.0)
             .seen(rank::AMBIENT),
+            function("grade_pct", "%", "rise of the road over its horizontal length", |v| {
+                100.0 * v.disturbance.grade
+            })
+            .within(-20.0, 20.0),
+            function("headwind_m_s", "m/s", "wind against the vehicle", |v| v.disturbance.headwind_m_s)
+                .within(-20.0, 20.0),
         ]);
     }
 

@@ -1,5 +1,6 @@
 //! What the surroundings do during a step.
 
+use crate::components::body::Road;
 use crate::media::air::AirProperties;
 
 /// Period of all controllers and of a plant step [s].
@@ -20,6 +21,10 @@ pub struct Disturbance {
     pub solar_gain_w: f64,
     /// People in the cabin.
     pub occupants: f64,
+    /// Rise of the road over its horizontal length [-]; downhill is negative.
+    pub grade: f64,
+    /// Wind against the vehicle [m/s]; from behind is negative.
+    pub headwind_m_s: f64,
 }
 
 impl Disturbance {
@@ -27,5 +32,26 @@ impl Disturbance {
     #[must_use]
     pub fn mean_speed_m_s(&self) -> f64 {
         0.5 * (self.start_speed_m_s + self.end_speed_m_s)
+    }
+
+    /// Speed of the air along a vehicle of a speed [m/s], whichever way it goes: what outer surfaces exchange heat with.
+    #[must_use]
+    #[inline]
+    pub fn air_speed_m_s(&self, speed_m_s: f64) -> f64 {
+        (speed_m_s + self.headwind_m_s).abs()
+    }
+
+    /// Speed of the air that meets the front of a vehicle of a speed [m/s]; none enters where the wind overtakes it.
+    #[must_use]
+    #[inline]
+    pub fn frontal_air_speed_m_s(&self, speed_m_s: f64) -> f64 {
+        (speed_m_s + self.headwind_m_s).max(0.0)
+    }
+
+    /// The road and the air over it.
+    #[must_use]
+    #[inline]
+    pub fn road(&self) -> Road<'_> {
+        Road { air: &self.air, headwind_m_s: self.headwind_m_s, grade: self.grade }
     }
 }

@@ -27,6 +27,8 @@ fn cool_down(more: &[String]) {
         ambient_humidity_ratio: 0.0,
         solar_gain_w: 0.0,
         occupants: 0.0,
+        grade: 0.0,
+        headwind_m_s: 0.0,
     };
     let mut initial = InitialParameters::soaked(Celsius(-10.0), 80.0);
     initial.set("cabin", Some(Celsius(20.0)));

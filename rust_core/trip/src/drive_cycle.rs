@@ -1,15 +1,18 @@
-//! Drive cycles: speed against time.
+//! Drive cycles: speed against time, and how steep the road is.
 
 use crate::kinds::CYCLE;
+use crate::road::Road;
 use crate::trace::Trace;
 use hp_plant::error::PlantResult;
 use std::sync::Arc;
 
-/// Speed at every full second. Parts of a cycle share its speeds.
+/// Speed at every full second. Parts of a cycle share its speeds and its road.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriveCycle {
     name: Arc<str>,
     all_speeds_m_s: Arc<[f64]>,
+    /// None where it is level.
+    road: Option<Arc<Road>>,
     first_s: usize,
     last_s: usize,
 }
@@ -34,11 +37,13 @@ impl DriveCycle {
     /// The cycle of a trace; columns that tell of other things do not matter.
     ///
     /// # Errors
-    /// It has no speed.
+    /// It has no speed, or its elevations are steeper than a road can be.
     pub fn of(trace: &Trace) -> PlantResult<Self> {
+        let all_speeds_m_s = trace.speeds_m_s()?;
         Ok(Self {
             name: Arc::clone(trace.name()),
-            all_speeds_m_s: trace.speeds_m_s()?,
+            road: Road::of(trace, &all_speeds_m_s)?.map(Arc::new),
+            all_speeds_m_s,
             first_s: 0,
             last_s: trace.duration_s(),
         })
@@ -64,6 +69,17 @@ impl DriveCycle {
     #[must_use]
     pub fn speeds_m_s(&self) -> &[f64] {
         &self.all_speeds_m_s[self.first_s..=self.last_s]
+    }
+
+    /// Rise of the road over its horizontal length in the second after so many [-], where a vehicle is that is so far behind
+    /// its cycle [m].
+    #[must_use]
+    #[inline]
+    pub fn grade(&self, second: usize, behind_m: f64) -> f64 {
+        match &self.road {
+            Some(road) => road.grade(self.first_s + second.min(self.duration_s()), behind_m),
+            None => 0.0,
+        }
     }
 
     /// Duration [s].

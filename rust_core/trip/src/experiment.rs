@@ -6,6 +6,7 @@ use crate::drive_cycle::DriveCycle;
 use crate::heat_demand_commander::HeatDemandCommander;
 use crate::pace::Pace;
 use crate::scenario::{ClimateParameters, ScenarioParameters, known_member};
+use crate::weather::Weather;
 use hp_plant::config::initial::InitialParameters;
 use hp_plant::config::library::Override;
 use hp_plant::error::{PlantError, PlantResult};
@@ -24,6 +25,8 @@ pub struct Experiment {
     pub air: AirProperties,
     /// Water in a kilogram of its dry air [kg/kg].
     pub ambient_humidity_ratio: f64,
+    /// Climate over time; none where it is constant.
+    pub weather: Option<Arc<Weather>>,
     /// Initial state of this run.
     pub initial: InitialParameters,
     /// Vehicle.
@@ -97,8 +100,15 @@ impl Experiment {
             layout,
         )
         .map_err(|violation| violation.in_file(scenario_name))?;
+        let cycle = DriveCycle::load(&scenario.cycle).map_err(named)?;
+        for series in scenario.climate_series.as_deref().into_iter().chain(scenario.settings.trace()) {
+            series.check_length(&scenario.cycle, cycle.duration_s()).map_err(named)?;
+        }
+        let aperture_m2 = plant.vehicle.body.solar_aperture_m2;
+        let weather = scenario.climate_series.as_deref();
         Ok(Self {
-            cycle: DriveCycle::load(&scenario.cycle).map_err(named)?,
+            weather: weather.map(|series| Arc::new(Weather::of(series, &scenario.climate, aperture_m2))),
+            cycle,
             controller: controller.into(),
             rules: Arc::new(file.at(scenario.climate.ambient_temperature_degc, &scenario.strategy, layout)),
             controller_file: file,
@@ -124,7 +134,16 @@ impl Experiment {
     #[inline]
     pub fn next_disturbance(&self, step: usize, pace: &Pace) -> Disturbance {
         let end_speed_m_s = pace.wanted_m_s(&self.cycle, step);
-        Disturbance { start_speed_m_s: pace.speed_m_s, end_speed_m_s, ..self.disturbance(step) }
+        let grade = self.cycle.grade(step, pace.behind_m);
+        Disturbance { start_speed_m_s: pace.speed_m_s, end_speed_m_s, grade, ..self.disturbance(step) }
+    }
+
+    /// What the surroundings did to a vehicle at its pace in the last of so many steps, at the speeds of the cycle; before the
+    /// first, what they will do.
+    #[must_use]
+    pub fn last_disturbance(&self, steps: usize, pace: &Pace) -> Disturbance {
+        let step = steps.saturating_sub(1);
+        Disturbance { grade: self.cycle.grade(step, pace.behind_m), ..self.disturbance(step) }
     }
 
     /// What the surroundings do during a step, at the speeds of the cycle.
@@ -132,13 +151,19 @@ impl Experiment {
     pub fn disturbance(&self, step: usize) -> Disturbance {
         let speeds = self.cycle.speeds_m_s();
         let at = |second: usize| speeds[second.min(speeds.len() - 1)];
-        Disturbance {
+        let mut disturbance = Disturbance {
             start_speed_m_s: at(step),
             end_speed_m_s: at(step + 1),
             air: self.air,
             ambient_humidity_ratio: self.ambient_humidity_ratio,
             solar_gain_w: self.climate.solar_gain_w,
             occupants: f64::from(self.climate.occupants),
+            grade: self.cycle.grade(step, 0.0),
+            headwind_m_s: 0.0,
+        };
+        if let Some(weather) = &self.weather {
+            weather.enter(step, &mut disturbance);
         }
+        disturbance
     }
 }

@@ -20,8 +20,13 @@ pub const SCENARIO: Kind = Kind {
         Reference { path: &["vehicle"], kind: &VEHICLE, brings: &[] },
         Reference { path: &["cycle"], kind: &CYCLE, brings: &[] },
         Reference { path: &["controller"], kind: &CONTROLLER, brings: &[] },
+        Reference { path: &["climate", "series"], kind: &SERIES, brings: &[] },
+        Reference { path: &["settings", "series"], kind: &SERIES, brings: &[] },
     ],
 };
+
+/// Climate or settings against time, none of which is built in.
+pub const SERIES: Kind = Kind { word: "series", ending: "csv", files: &[], references: &[] };
 
 /// Speed against time: `cycles/*.csv`.
 pub const CYCLE: Kind = Kind { word: "drive cycle", ending: "csv", files: embedded::CYCLES, references: &[] };

@@ -76,7 +76,7 @@ impl Experiment {
     pub fn start(&self) -> Run {
         let state = self.plant.parked_in(&self.initial, self.ambient_humidity_ratio);
         Run {
-            memory: self.rules.awake(&self.plant, &state),
+            memory: self.rules.awake(&self.plant, &state, &self.scenario.settings.at(0)),
             state,
             pace: Pace::start(&self.cycle),
             steps: 0,
@@ -97,7 +97,8 @@ impl Experiment {
     fn enter_demand(&self, run: &mut Run, demand: &mut Demand) {
         let time_s = run.state.time_s;
         self.commander.change_requests(time_s, demand);
-        self.rules.demand(&self.plant, &run.state, &mut run.memory, demand);
+        let settings = self.scenario.settings.at(run.steps);
+        self.rules.demand(&self.plant, &run.state, &settings, &mut run.memory, demand);
         self.commander.apply_schedule(time_s, demand);
     }
 
@@ -135,7 +136,7 @@ impl Experiment {
 
     /// Appends everything that can be seen of a run now, one value a signal.
     pub fn look(&self, run: &Run, row: &mut Vec<f64>) {
-        let disturbance = self.disturbance(run.steps.saturating_sub(1));
+        let disturbance = self.last_disturbance(run.steps, &run.pace);
         let view = View {
             plant: &self.plant,
             state: &run.state,

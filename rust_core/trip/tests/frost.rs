@@ -28,6 +28,8 @@ fn weather(ambient_degc: f64, relative_humidity: f64, speed_m_s: f64) -> Disturb
         ambient_humidity_ratio: moist_air::humidity_ratio(relative_humidity, ambient_k),
         solar_gain_w: 0.0,
         occupants: 1.0,
+        grade: 0.0,
+        headwind_m_s: 0.0,
     }
 }
 

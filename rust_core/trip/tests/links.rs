@@ -26,6 +26,8 @@ fn weather(ambient_degc: f64, speed_m_s: f64) -> Disturbance {
         ambient_humidity_ratio: 0.0,
         solar_gain_w: 0.0,
         occupants: 1.0,
+        grade: 0.0,
+        headwind_m_s: 0.0,
     }
 }
 

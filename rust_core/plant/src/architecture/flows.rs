@@ -60,6 +60,8 @@ flows! {
     ROLLING, "rolling_resistance_power_w", Leaves;
     /// Rise of kinetic energy.
     KINETIC, "kinetic_power_w", Inside;
+    /// Rise of potential energy, negative downhill.
+    CLIMB, "climb_power_w", Inside;
     /// Power at the wheels, negative while braking.
     WHEEL, "wheel_power_w", Inside;
     /// Braking power of the friction brakes.

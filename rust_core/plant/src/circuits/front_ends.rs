@@ -55,7 +55,8 @@ pub(crate) fn blow<S: Shape>(
     frosts: &[Frost; FRONT_END_PLACES],
     asked: &Asked<'_>,
 ) -> FrontAirs {
-    let (speed_m_s, air) = (disturbance.mean_speed_m_s(), &disturbance.air);
+    let (speed_m_s, air) =
+        (disturbance.frontal_air_speed_m_s(disturbance.mean_speed_m_s()), &disturbance.air);
     let (mut draughts, mut needs) = ([Draught::default(); FRONT_END_PLACES], [0.0; FRONT_END_PLACES]);
     let mut effects = [FrostEffect::NONE; FRONT_END_PLACES];
     each!(S::front_ends(shape) => |place, _| {

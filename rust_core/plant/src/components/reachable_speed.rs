@@ -57,14 +57,15 @@ fn highest(above: f64, holds: impl Fn(f64) -> bool) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::components::body::{BodyParameters, RoadLoad};
+    use crate::components::body::{BodyParameters, Road, RoadLoad};
     use crate::config::vehicle::VehicleParameters;
     use crate::media::air;
     use proptest::prelude::*;
 
     fn attempt(vehicle: &VehicleParameters, start_m_s: f64, end_m_s: f64) -> (f64, Powertrain<'_>) {
         let air = air::at_temperature(293.15);
-        let road: RoadLoad = BodyParameters::road_load(&vehicle.body, start_m_s, end_m_s, 1.0, &air);
+        let road: RoadLoad =
+            BodyParameters::road_load(&vehicle.body, start_m_s, end_m_s, 1.0, &Road::level(&air));
         let powertrain = Powertrain {
             motor: &vehicle.motor,
             transmission: &vehicle.transmission,

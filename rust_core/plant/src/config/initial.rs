@@ -11,17 +11,21 @@ const TEMPERATURE_ENDING: &str = "_temperature_degc";
 /// Temperatures that a member may start with [degC].
 pub const MEMBER_RANGE_DEGC: (f64, f64) = (-50.0, 100.0);
 
+/// Name of the windscreen of the cabin that counts for comfort, which has no node of its own.
+pub const WINDSCREEN: &str = "windscreen";
+
 /// State at the start; what is not given has the soak temperature.
 ///
-/// In a file each member's temperature has a key of its own: `battery_temperature_degc`; that of a cabin counts for its air
-/// and furnishings.
+/// In a file the temperature of each mass has a key of its own, the name of its trajectory column: `battery_temperature_degc`,
+/// `soft_furnishings_temperature_degc`. That of a cabin counts for all in it that has none of its own, that of a loop for its
+/// supply and return likewise.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InitialParameters {
     /// Temperature of everything after the soak [degC].
     pub soak_temperature_degc: Celsius,
     /// State of charge [%].
     pub state_of_charge_pct: f64,
-    /// Temperatures of members by name [degC].
+    /// Temperatures of masses by name [degC].
     members: BTreeMap<String, Celsius>,
 }
 
@@ -32,13 +36,13 @@ impl InitialParameters {
         Self { soak_temperature_degc, state_of_charge_pct, members: BTreeMap::new() }
     }
 
-    /// Temperature of a member, where it is not the soak temperature.
+    /// Temperature of a mass, where it is given.
     #[must_use]
     pub fn of(&self, member: &str) -> Option<Celsius> {
         self.members.get(member).copied()
     }
 
-    /// Gives a member a temperature of its own, or the soak temperature.
+    /// Gives a mass a temperature of its own, or the soak temperature.
     pub fn set(&mut self, member: &str, temperature: Option<Celsius>) {
         match temperature {
             Some(value) => self.members.insert(member.to_owned(), value),
@@ -46,7 +50,7 @@ impl InitialParameters {
         };
     }
 
-    /// Members with a temperature of their own.
+    /// Masses with a temperature of their own.
     pub fn members(&self) -> impl Iterator<Item = &str> {
         self.members.keys().map(String::as_str)
     }
@@ -81,7 +85,7 @@ impl<'de> Deserialize<'de> for InitialParameters {
         for (key, value) in file.others {
             let member = key.strip_suffix(TEMPERATURE_ENDING).ok_or_else(|| {
                 let known =
-                    format!("soak_temperature_degc, state_of_charge_pct and <member>{TEMPERATURE_ENDING}");
+                    format!("soak_temperature_degc, state_of_charge_pct and <mass>{TEMPERATURE_ENDING}");
                 D::Error::custom(format!("unknown field `{key}`, expected one of {known}"))
             })?;
             members.insert(member.to_owned(), value);

@@ -1,5 +1,6 @@
 //! One complete vehicle: its architecture, and a section of numbers for each part of it.
 
+use super::initial::WINDSCREEN;
 use super::kinds::{ARCHITECTURE, FLUID_LIMITS, VEHICLE};
 use super::library::{self, Override};
 use super::{Validate, Violation, check_range, deserialized, orders};
@@ -152,6 +153,34 @@ pub fn built_in_members() -> &'static [String] {
         members.sort_unstable();
         members.dedup();
         members
+    })
+}
+
+/// Names of all that may have a temperature of its own at the start in a layout: members, loops, nodes, the windscreen.
+#[must_use]
+pub fn masses(layout: &Layout) -> Vec<&str> {
+    let members = layout.members.iter().filter(|member| member.node.is_some());
+    let mut names: Vec<&str> = members.map(|member| member.name.as_str()).collect();
+    names.extend(layout.loops.iter().map(|circuit| circuit.name.as_str()));
+    names.extend(layout.nodes.iter().map(|node| node.stem.as_str()));
+    names.push(WINDSCREEN);
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+/// Names of the masses of all built-in architectures.
+#[must_use]
+pub fn built_in_masses() -> &'static [String] {
+    static MASSES: OnceLock<Vec<String>> = OnceLock::new();
+    MASSES.get_or_init(|| {
+        let layouts = library::names(ARCHITECTURE).into_iter().filter_map(|name| architecture(name).ok());
+        let mut names: Vec<String> = layouts
+            .flat_map(|layout| masses(&layout).into_iter().map(str::to_owned).collect::<Vec<_>>())
+            .collect();
+        names.sort_unstable();
+        names.dedup();
+        names
     })
 }
 

@@ -4,8 +4,9 @@
 //! the plant's temperatures as a real one does and has no way to the plant but its [`Demand`].
 
 use super::options::Options;
-use super::rule_based::{CabinMode, ConstantSettings, Presets, RuleBased, constant_settings_of};
+use super::rule_based::{CabinMode, Comfort, ConstantSettings, Presets, RuleBased, constant_settings_of};
 use crate::roles::{Connectable, Roles, Store, Way};
+use crate::settings::DriverSettings;
 use crate::strategy::{BatteryTreatment, ClimateControl, Strategy};
 use hp_plant::architecture::layout::Layout;
 use hp_plant::command::{Demand, ISOLATED};
@@ -130,6 +131,8 @@ pub struct Hpcu {
     roles: Roles,
     presets: Presets,
     gains: PowerGains,
+    /// How far below the cabin target the PTC's controller aims [K].
+    heater_offset_k: f64,
 }
 
 /// Gains of the four PIDs of the compressor power.
@@ -156,10 +159,11 @@ impl RuleBased for Hpcu {
             chiller: gains(&parameters.chiller_pid),
         };
         let roles = Roles::of(layout, &strategy);
+        let heater_offset_k = parameters.options.heater_offset_k(roles.heat_pump(&strategy));
         let mut settings = ConstantSettings::from(&parameters);
-        settings.cabin_set_point_degc.0 -= parameters.options.heater_offset_k(roles.heat_pump(&strategy));
+        settings.cabin_set_point_degc.0 -= heater_offset_k;
         let presets = Presets::of(&roles, &settings);
-        Self { roles, presets, parameters, strategy, gains }
+        Self { roles, presets, parameters, strategy, gains, heater_offset_k }
     }
 
     fn roles(&self) -> &Roles {
@@ -170,9 +174,9 @@ impl RuleBased for Hpcu {
         ConstantSettings::from(&self.parameters)
     }
 
-    fn awake(&self, _: &Plant, state: &State) -> HpcuMemory {
-        let cabin_k = temperature_k(state, self.roles.cabin_air);
-        let warm = cabin_k > self.parameters.cabin_set_point_degc.kelvin();
+    fn awake(&self, _: &Plant, state: &State, settings: &DriverSettings) -> HpcuMemory {
+        let comfort = self.comfort(state, settings);
+        let warm = comfort.cabin_k > comfort.target_k;
         HpcuMemory {
             cabin_mode: if warm { CabinMode::Cooling } else { CabinMode::Heating },
             heats_battery: false,
@@ -186,30 +190,45 @@ impl RuleBased for Hpcu {
         }
     }
 
-    fn demand(&self, plant: &Plant, state: &State, memory: &mut HpcuMemory, demand: &mut Demand) {
-        let mode = self.cabin_mode(state, memory);
-        self.connect(plant, state, memory, mode, demand);
+    fn demand(
+        &self,
+        plant: &Plant,
+        state: &State,
+        settings: &DriverSettings,
+        memory: &mut HpcuMemory,
+        demand: &mut Demand,
+    ) {
+        let comfort = self.comfort(state, settings);
+        let mode = self.cabin_mode(&comfort, memory);
+        self.connect(plant, state, &comfort, memory, mode, demand);
         let heats = self.strategy.ptc
             && mode == CabinMode::Heating
-            && self.cabin_error_k(state, mode) >= self.parameters.ptc_from_deviation_k;
+            && comfort.lack_k(mode) >= self.parameters.ptc_from_deviation_k;
         self.roles.allow_heaters(heats, demand);
-        self.trim_requests(state, memory, mode, demand);
-        let (parameters, lack_k) = (&self.parameters, self.cabin_error_k(state, mode));
+        self.trim_requests(state, &comfort, memory, mode, demand);
+        let (parameters, lack_k) = (&self.parameters, comfort.lack_k(mode));
         self.roles.blow(
             parameters.options.blower_level(mode, self.constant_settings().blower_level(mode), lack_k),
             demand,
         );
         parameters.options.mind_air(&self.roles, state, demand);
+        settings.enter(self.heater_offset_k, &self.roles, demand);
         if let Some(row) = self.roles.compressor_row {
-            demand[row] = self.compressor_power_w(plant, state, memory, mode);
+            demand[row] = self.compressor_power_w(plant, state, &comfort, memory, mode);
         }
     }
 }
 
 impl Hpcu {
-    fn cabin_mode(&self, state: &State, memory: &mut HpcuMemory) -> CabinMode {
-        let above_k =
-            temperature_k(state, self.roles.cabin_air) - self.parameters.cabin_set_point_degc.kelvin();
+    fn comfort(&self, state: &State, settings: &DriverSettings) -> Comfort {
+        Comfort {
+            cabin_k: temperature_k(state, self.roles.cabin_air),
+            target_k: settings.target_k(self.parameters.cabin_set_point_degc),
+        }
+    }
+
+    fn cabin_mode(&self, comfort: &Comfort, memory: &mut HpcuMemory) -> CabinMode {
+        let above_k = comfort.cabin_k - comfort.target_k;
         memory.cabin_mode = match self.strategy.climate_control {
             ClimateControl::Heat => CabinMode::Heating,
             ClimateControl::Cool => CabinMode::Cooling,
@@ -224,13 +243,14 @@ impl Hpcu {
         &self,
         plant: &Plant,
         state: &State,
+        comfort: &Comfort,
         memory: &mut HpcuMemory,
         mode: CabinMode,
         demand: &mut Demand,
     ) {
         self.presets.enter(mode, demand);
         if let Some(battery) = self.roles.battery {
-            battery.connect(demand, self.battery_way(&battery, state, memory));
+            battery.connect(demand, self.battery_way(&battery, state, comfort, memory));
         }
         for &(row, option) in &self.roles.plates {
             demand[row] = if memory.cools_battery { option } else { ISOLATED };
@@ -241,7 +261,13 @@ impl Hpcu {
         }
     }
 
-    fn battery_way(&self, battery: &Connectable, state: &State, memory: &mut HpcuMemory) -> Option<Way> {
+    fn battery_way(
+        &self,
+        battery: &Connectable,
+        state: &State,
+        comfort: &Comfort,
+        memory: &mut HpcuMemory,
+    ) -> Option<Way> {
         let limits = &self.parameters.battery;
         let battery_k = temperature_k(state, self.roles.battery_node);
         let heat_up_to_k = limits.heat_up_to_degc.kelvin();
@@ -254,7 +280,7 @@ impl Hpcu {
                     heat_up_to_k - if memory.heats_battery { 0.0 } else { limits.heating_hysteresis_k };
                 let release_k =
                     cool_above_k - if memory.cools_battery { limits.cooling_hysteresis_k } else { 0.0 };
-                (battery_k < resume_k && self.battery_share(state) > 0.0, battery_k > release_k)
+                (battery_k < resume_k && self.battery_share(state, comfort) > 0.0, battery_k > release_k)
             }
         };
         match (memory.heats_battery, memory.cools_battery) {
@@ -265,8 +291,15 @@ impl Hpcu {
     }
 
     /// Lets requests fade near their targets, so that neither cabin nor battery overshoots.
-    fn trim_requests(&self, state: &State, memory: &HpcuMemory, mode: CabinMode, demand: &mut Demand) {
-        let beyond_k = self.cabin_error_k(state, mode) + self.parameters.cabin_request_band_k;
+    fn trim_requests(
+        &self,
+        state: &State,
+        comfort: &Comfort,
+        memory: &HpcuMemory,
+        mode: CabinMode,
+        demand: &mut Demand,
+    ) {
+        let beyond_k = comfort.lack_k(mode) + self.parameters.cabin_request_band_k;
         for cabin in &self.roles.cabins {
             demand[cabin.request_row] *= (beyond_k / self.parameters.cabin_request_band_k).clamp(0.0, 1.0);
         }
@@ -281,7 +314,7 @@ impl Hpcu {
         if let Some(battery) = self.roles.battery
             && memory.heats_battery
         {
-            demand[battery.request_row] *= self.battery_share(state);
+            demand[battery.request_row] *= self.battery_share(state, comfort);
         }
         if mode == CabinMode::Cooling {
             self.roles.unlimit_rejection(demand);
@@ -289,15 +322,10 @@ impl Hpcu {
     }
 
     /// Share of its heat request that the battery gets while the cabin comes first.
-    fn battery_share(&self, state: &State) -> f64 {
+    fn battery_share(&self, state: &State, comfort: &Comfort) -> f64 {
         let supplies_k = self.roles.hot_supplies.iter().map(|&node| temperature_k(state, node));
-        let lack_k = self.cabin_error_k(state, CabinMode::Heating);
+        let lack_k = comfort.lack_k(CabinMode::Heating);
         self.parameters.options.battery_share(lack_k, supplies_k.reduce(f64::max))
-    }
-
-    /// Deviation that calls for compressor power [K].
-    fn cabin_error_k(&self, state: &State, mode: CabinMode) -> f64 {
-        mode.lack_k(self.parameters.cabin_set_point_degc.kelvin(), temperature_k(state, self.roles.cabin_air))
     }
 
     /// `min(max(PID battery, PID cabin), PID chiller, PID HTC)`.
@@ -305,6 +333,7 @@ impl Hpcu {
         &self,
         plant: &Plant,
         state: &State,
+        comfort: &Comfort,
         memory: &mut HpcuMemory,
         mode: CabinMode,
     ) -> f64 {
@@ -323,7 +352,7 @@ impl Hpcu {
             pid.output(gains, error_k, 0.0, highest_w)
         };
         let parameters = &self.parameters;
-        let cabin_w = power(&mut memory.cabin_pid, &self.gains.cabin, self.cabin_error_k(state, mode));
+        let cabin_w = power(&mut memory.cabin_pid, &self.gains.cabin, comfort.lack_k(mode));
         let battery_w = match self.battery_error_k(state, memory) {
             Some(error_k) => power(&mut memory.battery_pid, &self.gains.battery, error_k),
             None => 0.0,

@@ -10,6 +10,7 @@ pub mod rule_based;
 pub mod thermostat;
 
 use crate::roles::Roles;
+use crate::settings::DriverSettings;
 use crate::strategy::Strategy;
 use hp_plant::architecture::layout::Layout;
 use hp_plant::command::Demand;

@@ -1,6 +1,7 @@
 //! What a rule-based controller is, and the closed set of them as plain data.
 
 use crate::roles::Roles;
+use crate::settings::DriverSettings;
 use crate::strategy::Strategy;
 use hp_plant::architecture::layout::Layout;
 use hp_plant::command::Demand;
@@ -28,6 +29,23 @@ impl CabinMode {
             Self::Heating => target_k - cabin_k,
             Self::Cooling => cabin_k - target_k,
         }
+    }
+}
+
+/// A cabin and its target.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Comfort {
+    /// Temperature of the cabin that counts for comfort [K].
+    pub cabin_k: f64,
+    /// What it is to be [K].
+    pub target_k: f64,
+}
+
+impl Comfort {
+    /// How far the cabin is from its target, counted in the direction that a mode works against [K].
+    #[must_use]
+    pub fn lack_k(&self, mode: CabinMode) -> f64 {
+        mode.lack_k(self.target_k, self.cabin_k)
     }
 }
 
@@ -162,11 +180,18 @@ pub trait RuleBased: Debug + Clone + PartialEq {
 
     /// Memory at the start of a run.
     #[must_use]
-    fn awake(&self, plant: &Plant, state: &State) -> Self::Memory;
+    fn awake(&self, plant: &Plant, state: &State, settings: &DriverSettings) -> Self::Memory;
 
     /// Enters what it asks for in the next control period into a demand that has everything off and the heat flows that the
-    /// heatDemandCommander requests.
-    fn demand(&self, plant: &Plant, state: &State, memory: &mut Self::Memory, demand: &mut Demand);
+    /// heatDemandCommander requests. What the driver has set counts before its own numbers.
+    fn demand(
+        &self,
+        plant: &Plant,
+        state: &State,
+        settings: &DriverSettings,
+        memory: &mut Self::Memory,
+        demand: &mut Demand,
+    );
 }
 
 /// Declares the closed set of rule-based controllers: of each its file's name, by which `rules = "..."` selects it, and its
@@ -240,9 +265,11 @@ macro_rules! rule_based_controllers {
 
             /// Memory at the start of a run.
             #[must_use]
-            pub fn awake(&self, plant: &Plant, state: &State) -> RuleMemory {
+            pub fn awake(&self, plant: &Plant, state: &State, settings: &DriverSettings) -> RuleMemory {
                 match self {
-                    $( Self::$controller(rules) => RuleMemory::$controller(rules.awake(plant, state)), )+
+                    $( Self::$controller(rules) => {
+                        RuleMemory::$controller(rules.awake(plant, state, settings))
+                    } )+
                 }
             }
 
@@ -251,16 +278,17 @@ macro_rules! rule_based_controllers {
                 &self,
                 plant: &Plant,
                 state: &State,
+                settings: &DriverSettings,
                 memory: &mut RuleMemory,
                 demand: &mut Demand,
             ) {
                 match (self, &mut *memory) {
                     $( (Self::$controller(rules), RuleMemory::$controller(memory)) => {
-                        rules.demand(plant, state, memory, demand)
+                        rules.demand(plant, state, settings, memory, demand)
                     } )+
                     (rules, memory) => {
-                        *memory = rules.awake(plant, state);
-                        rules.demand(plant, state, memory, demand);
+                        *memory = rules.awake(plant, state, settings);
+                        rules.demand(plant, state, settings, memory, demand);
                     }
                 }
             }

@@ -1,8 +1,9 @@
 //! A thermostat: full power on one side of a cabin temperature, none on the other. Untuned, to compare others with.
 
 use super::options::Options;
-use super::rule_based::{CabinMode, ConstantSettings, Presets, RuleBased, constant_settings_of};
+use super::rule_based::{CabinMode, Comfort, ConstantSettings, Presets, RuleBased, constant_settings_of};
 use crate::roles::Roles;
+use crate::settings::DriverSettings;
 use crate::strategy::{ClimateControl, Strategy};
 use hp_plant::architecture::layout::Layout;
 use hp_plant::command::Demand;
@@ -49,6 +50,8 @@ pub struct Thermostat {
     strategy: Strategy,
     roles: Roles,
     presets: Presets,
+    /// How far below the cabin target the PTC's controller aims [K].
+    heater_offset_k: f64,
 }
 
 /// Memory of a thermostat.
@@ -58,29 +61,30 @@ pub struct ThermostatMemory {
 }
 
 impl Thermostat {
-    /// How far the cabin is beyond the target, counted in the direction that a mode works against [K].
-    fn lack_k(&self, state: &State, mode: CabinMode) -> f64 {
-        let cabin_k = state.temperatures_k[self.roles.cabin_air.index()];
-        mode.lack_k(self.parameters.cabin_set_point_degc.kelvin(), cabin_k)
+    fn comfort(&self, state: &State, settings: &DriverSettings) -> Comfort {
+        Comfort {
+            cabin_k: state.temperatures_k[self.roles.cabin_air.index()],
+            target_k: settings.target_k(self.parameters.cabin_set_point_degc),
+        }
     }
 
     /// Heating or cooling; in automatic climate control the other one as soon as that would switch on.
-    fn mode(&self, state: &State, last: CabinMode) -> CabinMode {
+    fn mode(&self, comfort: &Comfort, last: CabinMode) -> CabinMode {
         match (self.strategy.climate_control, last) {
             (ClimateControl::Heat, _) => CabinMode::Heating,
             (ClimateControl::Cool, _) => CabinMode::Cooling,
-            (ClimateControl::Auto, CabinMode::Heating) if self.switches_on(state, CabinMode::Cooling) => {
+            (ClimateControl::Auto, CabinMode::Heating) if self.switches_on(comfort, CabinMode::Cooling) => {
                 CabinMode::Cooling
             }
-            (ClimateControl::Auto, CabinMode::Cooling) if self.switches_on(state, CabinMode::Heating) => {
+            (ClimateControl::Auto, CabinMode::Cooling) if self.switches_on(comfort, CabinMode::Heating) => {
                 CabinMode::Heating
             }
             (ClimateControl::Auto, last) => last,
         }
     }
 
-    fn switches_on(&self, state: &State, mode: CabinMode) -> bool {
-        self.lack_k(state, mode) > self.parameters.half_band_k
+    fn switches_on(&self, comfort: &Comfort, mode: CabinMode) -> bool {
+        comfort.lack_k(mode) > self.parameters.half_band_k
     }
 }
 
@@ -92,10 +96,11 @@ impl RuleBased for Thermostat {
 
     fn new(parameters: ThermostatParameters, strategy: Strategy, layout: &Layout) -> Self {
         let roles = Roles::of(layout, &strategy);
+        let heater_offset_k = parameters.options.heater_offset_k(roles.heat_pump(&strategy));
         let mut settings = ConstantSettings::from(&parameters);
-        settings.cabin_set_point_degc.0 -= parameters.options.heater_offset_k(roles.heat_pump(&strategy));
+        settings.cabin_set_point_degc.0 -= heater_offset_k;
         let presets = Presets::of(&roles, &settings);
-        Self { roles, presets, parameters, strategy }
+        Self { roles, presets, parameters, strategy, heater_offset_k }
     }
 
     fn roles(&self) -> &Roles {
@@ -106,29 +111,37 @@ impl RuleBased for Thermostat {
         ConstantSettings::from(&self.parameters)
     }
 
-    fn awake(&self, _: &Plant, state: &State) -> ThermostatMemory {
-        let warm = self.lack_k(state, CabinMode::Cooling) > 0.0;
+    fn awake(&self, _: &Plant, state: &State, settings: &DriverSettings) -> ThermostatMemory {
+        let warm = self.comfort(state, settings).lack_k(CabinMode::Cooling) > 0.0;
         ThermostatMemory { mode: if warm { CabinMode::Cooling } else { CabinMode::Heating } }
     }
 
     /// Cabin on what heats or cools it, sources on the heat pump while it heats, battery and stores isolated.
-    fn demand(&self, _: &Plant, state: &State, memory: &mut ThermostatMemory, demand: &mut Demand) {
-        memory.mode = self.mode(state, memory.mode);
+    fn demand(
+        &self,
+        _: &Plant,
+        state: &State,
+        settings: &DriverSettings,
+        memory: &mut ThermostatMemory,
+        demand: &mut Demand,
+    ) {
+        let comfort = self.comfort(state, settings);
+        memory.mode = self.mode(&comfort, memory.mode);
         let mode = memory.mode;
         self.presets.enter(mode, demand);
         let parameters = &self.parameters;
         let level = parameters.options.blower_level(
             mode,
             self.constant_settings().blower_level(mode),
-            self.lack_k(state, mode),
+            comfort.lack_k(mode),
         );
         self.roles.blow(level, demand);
         parameters.options.mind_air(&self.roles, state, demand);
-        let cabin_k = state.temperatures_k[self.roles.cabin_air.index()];
-        let cold = cabin_k < self.parameters.ptc_below_degc.kelvin();
+        settings.enter(self.heater_offset_k, &self.roles, demand);
+        let cold = comfort.cabin_k < self.parameters.ptc_below_degc.kelvin();
         self.roles.allow_heaters(self.strategy.ptc && mode == CabinMode::Heating && cold, demand);
         if let Some(row) = self.roles.compressor_row {
-            let on = self.strategy.heat_pump && self.switches_on(state, mode);
+            let on = self.strategy.heat_pump && self.switches_on(&comfort, mode);
             demand[row] = if on { self.parameters.compressor_power_w } else { 0.0 };
         }
         if mode == CabinMode::Cooling {

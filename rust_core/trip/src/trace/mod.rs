@@ -79,6 +79,40 @@ impl Trace {
         found.map(|(_, values)| values)
     }
 
+    /// Checks that it can serve as a series of quantities on a trip.
+    ///
+    /// # Errors
+    /// It ends before the trip.
+    pub fn check_length(&self, cycle: &str, duration_s: usize) -> PlantResult<()> {
+        if self.duration_s >= duration_s {
+            return Ok(());
+        }
+        Err(PlantError::Syntax {
+            file: self.name.to_string(),
+            message: format!(
+                "column `time_s` ends {} s after its first row, but the cycle `{cycle}` lasts {duration_s} s: a series must \
+                 last as long as its trip",
+                self.duration_s
+            ),
+        })
+    }
+
+    /// Checks that it has at least one of some quantities.
+    ///
+    /// # Errors
+    /// It has none.
+    pub fn check_has_any(&self, quantities: &[Quantity]) -> PlantResult<()> {
+        if quantities.iter().any(|&quantity| self.values(quantity).is_some()) {
+            return Ok(());
+        }
+        let known = columns::COLUMNS.iter().filter(|column| quantities.contains(&column.quantity));
+        let names: Vec<&str> = known.map(|column| column.name).collect();
+        Err(PlantError::Syntax {
+            file: self.name.to_string(),
+            message: format!("there is no column of use here, but there must be one of {}", names.join(", ")),
+        })
+    }
+
     /// Speed at full seconds [m/s].
     ///
     /// # Errors

@@ -36,6 +36,16 @@ pub struct RandomScenario {
     relative_humidity: f64,
     speeds_m_s: Vec<f64>,
     commands: Vec<Vec<f32>>,
+    roads: Vec<Road>,
+}
+
+/// A piece of road and its weather.
+#[derive(Debug, Clone, Copy)]
+struct Road {
+    grade: f64,
+    headwind_m_s: f64,
+    warmer_k: f64,
+    sun_share: f64,
 }
 
 /// Scenarios for a vehicle with so many actuators.
@@ -49,6 +59,7 @@ pub fn random_scenario(actuators: usize) -> impl Strategy<Value = RandomScenario
         (3.0..100.0_f64, 0.0..800.0_f64, 0.0..5.0_f64, 0.0..1.0_f64),
         prop::collection::vec(0.0..40.0_f64, segments + 1),
         prop::collection::vec(command, segments),
+        prop::collection::vec(road(), segments),
     )
         .prop_map(
             |(
@@ -56,6 +67,7 @@ pub fn random_scenario(actuators: usize) -> impl Strategy<Value = RandomScenario
                 (state_of_charge_pct, solar_gain_w, occupants, relative_humidity),
                 speeds_m_s,
                 commands,
+                roads,
             )| {
                 RandomScenario {
                     ambient_degc: temperatures.0,
@@ -68,9 +80,18 @@ pub fn random_scenario(actuators: usize) -> impl Strategy<Value = RandomScenario
                     relative_humidity,
                     speeds_m_s,
                     commands,
+                    roads,
                 }
             },
         )
+}
+
+/// Half of the roads are level, without wind, in constant weather.
+fn road() -> impl Strategy<Value = Road> {
+    let any = |low: f64, high: f64| prop_oneof![Just(0.0), low..high];
+    (any(-0.2, 0.2), any(-15.0, 15.0), any(-5.0, 5.0), 0.0..1.0_f64).prop_map(
+        |(grade, headwind_m_s, warmer_k, sun_share)| Road { grade, headwind_m_s, warmer_k, sun_share },
+    )
 }
 
 /// The same so many scenarios for a vehicle at every call.
@@ -104,21 +125,25 @@ impl RandomScenario {
         initial
     }
 
-    fn ambient_humidity_ratio(&self) -> f64 {
-        moist_air::humidity_ratio(self.relative_humidity, Celsius(self.ambient_degc).kelvin())
+    /// Humidity ratio of ambient air that is so much warmer than at the start [kg/kg].
+    fn ambient_humidity_ratio(&self, warmer_k: f64) -> f64 {
+        moist_air::humidity_ratio(self.relative_humidity, Celsius(self.ambient_degc + warmer_k).kelvin())
     }
 
     fn disturbance(&self, step: usize) -> Disturbance {
         let segment = step / HOLD_S;
         let (from, to) = (self.speeds_m_s[segment], self.speeds_m_s[segment + 1]);
+        let Road { grade, headwind_m_s, warmer_k, sun_share } = self.roads[segment];
         let at = |second: usize| from + (to - from) * (second % HOLD_S) as f64 / HOLD_S as f64;
         Disturbance {
             start_speed_m_s: at(step),
             end_speed_m_s: if (step + 1).is_multiple_of(HOLD_S) { to } else { at(step + 1) },
-            air: air::at_temperature(Celsius(self.ambient_degc).kelvin()),
-            ambient_humidity_ratio: self.ambient_humidity_ratio(),
-            solar_gain_w: self.solar_gain_w,
+            air: air::at_temperature(Celsius(self.ambient_degc + warmer_k).kelvin()),
+            ambient_humidity_ratio: self.ambient_humidity_ratio(warmer_k),
+            solar_gain_w: self.solar_gain_w * sun_share,
             occupants: self.occupants,
+            grade,
+            headwind_m_s,
         }
     }
 
@@ -131,7 +156,7 @@ impl RandomScenario {
 
     /// Drives the scenario and shows every step.
     pub fn drive(&self, plant: &Plant, mut look: impl FnMut(usize, &Step<'_>)) {
-        let mut state = plant.parked_in(&self.initial(plant), self.ambient_humidity_ratio());
+        let mut state = plant.parked_in(&self.initial(plant), self.ambient_humidity_ratio(0.0));
         for step in 0..STEPS_EACH {
             let (before, command, disturbance) = (state, self.command(step), self.disturbance(step));
             let record = plant.step(&mut state, &command, &disturbance);

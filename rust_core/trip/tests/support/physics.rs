@@ -128,7 +128,8 @@ pub fn front_end_air_k(step: &Step<'_>, front_end: usize) -> f64 {
 pub fn front_end_flow_kg_s(step: &Step<'_>, front_end: usize) -> Option<f64> {
     let vehicle = &step.plant.vehicle;
     let stream = &vehicle.air_streams[front_end];
-    let face_m_s = stream.ram_air_share * step.disturbance.mean_speed_m_s();
+    let face_m_s =
+        stream.ram_air_share * step.disturbance.frontal_air_speed_m_s(step.disturbance.mean_speed_m_s());
     let ram_m3_s = stream.core_area_m2 * face_m_s.hypot(0.1);
     let fan_w = step.record.flows[Flow::FAN];
     let fans = vehicle.layout.front_ends.iter().filter(|end| end.behind.is_none()).count();
