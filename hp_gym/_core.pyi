@@ -404,6 +404,16 @@ def names(kind_word: str) -> list[str]:
 def config_text(kind_word: str, name: str) -> str:
     """Text of a configuration file by name or path."""
 
+def trace(path: str) -> dict[str, NDArray[np.float64]]:
+    """Columns of a trace file at full seconds, under their names in the file; `time_s` counts from 0 (docs/traces.md).
+
+    Raises:
+        ConfigurationError: There is no such file, or it is no trace.
+    """
+
+def trace_columns() -> list[tuple[str, float, float]]:
+    """Name, lowest and highest value of every column that a trace may have."""
+
 def reference_policy_names() -> list[str]:
     """Names of the reference policies: their files in `agents/reference_policies` without ending, sorted."""
 

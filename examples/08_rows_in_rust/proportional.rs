@@ -2,6 +2,7 @@
 
 use super::rule_based::{CabinMode, ConstantSettings, Presets, RuleBased};
 use crate::roles::Roles;
+use crate::settings::DriverSettings;
 use crate::strategy::{ClimateControl, Strategy};
 use hp_plant::architecture::layout::Layout;
 use hp_plant::command::Demand;
@@ -61,10 +62,17 @@ impl RuleBased for Proportional {
         constant_settings(&self.parameters)
     }
 
-    fn awake(&self, _: &Plant, _: &State) {}
+    fn awake(&self, _: &Plant, _: &State, _: &DriverSettings) {}
 
-    fn demand(&self, _: &Plant, state: &State, (): &mut (), demand: &mut Demand) {
-        let target_k = self.parameters.cabin_set_point_degc.kelvin();
+    fn demand(
+        &self,
+        _: &Plant,
+        state: &State,
+        settings: &DriverSettings,
+        (): &mut (),
+        demand: &mut Demand,
+    ) {
+        let target_k = settings.target_k(self.parameters.cabin_set_point_degc);
         let cabin_k = state.temperatures_k[self.roles.cabin_air.index()];
         let mode = match self.strategy.climate_control {
             ClimateControl::Heat => CabinMode::Heating,
@@ -73,6 +81,7 @@ impl RuleBased for Proportional {
             ClimateControl::Auto => CabinMode::Heating,
         };
         self.presets.enter(mode, demand);
+        settings.enter(0.0, &self.roles, demand);
         self.roles.allow_heaters(false, demand);
         if let Some(row) = self.roles.compressor_row {
             demand[row] = self.parameters.power_w_k * mode.lack_k(target_k, cabin_k).max(0.0);

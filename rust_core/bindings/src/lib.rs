@@ -8,6 +8,7 @@ mod experiment;
 mod kinds;
 mod scalars;
 mod sweep;
+mod traces;
 mod vector;
 mod vehicles;
 
@@ -55,6 +56,8 @@ mod _core {
     use super::kinds::{BENCHMARK, CALIBRATION, TRAINING, VALIDATION};
     #[pymodule_export]
     use super::sweep::summaries_of;
+    #[pymodule_export]
+    use super::traces::{trace, trace_columns};
     #[pymodule_export]
     use super::vector::{FinishedTrip, Outcomes, Vector};
     #[pymodule_export]

@@ -9,7 +9,7 @@ use hp_plant::numerics::interpolation::LinearTable;
 /// Steepest road, up or down [-]; the same for grades that a trace gives and for those that its elevations amount to.
 const STEEPEST: f64 = 0.4;
 
-/// The grade of elevations is that over so much of the way around a place [m]: receivers of satellites are meters off from one
+/// The grade of elevations is that over so much of the way around a place, or at either end of it [m]: receivers of satellites are meters off from one
 /// second to the next, roads are not.
 const WINDOW_M: f64 = 100.0;
 
@@ -84,8 +84,8 @@ fn of_elevations(ways_m: &[f64], elevations_m: &[f64]) -> Result<Vec<f64>, Strin
     let after = |second: usize| 0.5 * (ways_m[second] + ways_m[(second + 1).min(ways_m.len() - 1)]);
     (0..ways_m.len())
         .map(|second| {
-            let from_m = (after(second) - 0.5 * WINDOW_M).max(0.0);
-            let to_m = (after(second) + 0.5 * WINDOW_M).min(whole_m);
+            let from_m = (after(second) - 0.5 * WINDOW_M).clamp(0.0, (whole_m - WINDOW_M).max(0.0));
+            let to_m = (from_m + WINDOW_M).min(whole_m);
             let rise_m = heights.at(to_m) - heights.at(from_m);
             // What is driven is the slope's length.
             let level_m = ((to_m - from_m).powi(2) - rise_m * rise_m).max(0.0).sqrt();

@@ -18,7 +18,7 @@ use hp_trip::experiment::Experiment;
 use hp_trip::kinds::SCENARIO;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
-use support::{RandomScenario, TOLERANCE, physics, random_scenarios};
+use support::{RandomScenario, TOLERANCE, on_hills, physics, random_scenarios};
 
 const RANDOM_SCENARIOS: u32 = 1000;
 
@@ -95,6 +95,22 @@ fn ledger_closes_with_a_battery_tyres_and_oil_as_cold_as_real_ones() {
     random_scenarios(&plant, RANDOM_SCENARIOS).par_iter().for_each(|scenario| {
         scenario.drive(&plant, |_, step| physics::check(step));
     });
+}
+
+/// Grades to 20 %, wind to 15 m/s from either side, air that is up to 5 K warmer or colder from one moment to the next.
+#[test]
+fn ledger_closes_and_limits_hold_on_hills_in_wind_and_changing_weather() {
+    for vehicle in ["jeffs2019", "direct_ev"] {
+        let plant = Plant::load(vehicle, &[]).expect("built-in vehicle");
+        on_hills(random_scenarios(&plant, RANDOM_SCENARIOS)).par_iter().for_each(|scenario| {
+            let mut climbed = false;
+            scenario.drive(&plant, |_, step| {
+                physics::check(step);
+                climbed |= step.record.flows[Flow::CLIMB].abs() > 1000.0;
+            });
+            assert!(climbed, "{scenario:?}");
+        });
+    }
 }
 
 /// A moment in which some of the flows are at work.

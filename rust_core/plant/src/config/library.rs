@@ -86,11 +86,10 @@ pub fn text(kind: Kind, name: &str) -> PlantResult<String> {
         return bounded::text(name, kind.largest_bytes())
             .map_err(|message| PlantError::Syntax { file: name.to_owned(), message });
     }
-    Err(PlantError::Unknown {
-        kind: kind.word,
-        name: name.to_owned(),
-        available: format!("{}, or the path of a .{} file", names(kind).join(", "), kind.ending),
-    })
+    let path = format!("the path of a .{} file", kind.ending);
+    let available =
+        if kind.files.is_empty() { path } else { format!("{}, or {path}", names(kind).join(", ")) };
+    Err(PlantError::Unknown { kind: kind.word, name: name.to_owned(), available })
 }
 
 /// One replacement of a value by its dotted key (`battery.cell_capacity_ah`, `table.values[2]`).

@@ -36,6 +36,7 @@ pub struct RandomScenario {
     relative_humidity: f64,
     speeds_m_s: Vec<f64>,
     commands: Vec<Vec<f32>>,
+    /// Level, without wind and in constant weather where there is none.
     roads: Vec<Road>,
 }
 
@@ -59,7 +60,6 @@ pub fn random_scenario(actuators: usize) -> impl Strategy<Value = RandomScenario
         (3.0..100.0_f64, 0.0..800.0_f64, 0.0..5.0_f64, 0.0..1.0_f64),
         prop::collection::vec(0.0..40.0_f64, segments + 1),
         prop::collection::vec(command, segments),
-        prop::collection::vec(road(), segments),
     )
         .prop_map(
             |(
@@ -67,7 +67,6 @@ pub fn random_scenario(actuators: usize) -> impl Strategy<Value = RandomScenario
                 (state_of_charge_pct, solar_gain_w, occupants, relative_humidity),
                 speeds_m_s,
                 commands,
-                roads,
             )| {
                 RandomScenario {
                     ambient_degc: temperatures.0,
@@ -80,13 +79,14 @@ pub fn random_scenario(actuators: usize) -> impl Strategy<Value = RandomScenario
                     relative_humidity,
                     speeds_m_s,
                     commands,
-                    roads,
+                    roads: Vec::new(),
                 }
             },
         )
 }
 
-/// Half of the roads are level, without wind, in constant weather.
+const LEVEL: Road = Road { grade: 0.0, headwind_m_s: 0.0, warmer_k: 0.0, sun_share: 1.0 };
+
 fn road() -> impl Strategy<Value = Road> {
     let any = |low: f64, high: f64| prop_oneof![Just(0.0), low..high];
     (any(-0.2, 0.2), any(-15.0, 15.0), any(-5.0, 5.0), 0.0..1.0_f64).prop_map(
@@ -100,6 +100,15 @@ pub fn random_scenarios(plant: &Plant, count: u32) -> Vec<RandomScenario> {
     let mut runner = TestRunner::new_with_rng(Config::default(), rng);
     let strategy = random_scenario(plant.ranges.count());
     (0..count).map(|_| strategy.new_tree(&mut runner).expect("strategy without filters").current()).collect()
+}
+
+/// The same with hills, wind and weather that changes under way; the same at every call.
+pub fn on_hills(scenarios: Vec<RandomScenario>) -> Vec<RandomScenario> {
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[23; 32]);
+    let mut runner = TestRunner::new_with_rng(Config::default(), rng);
+    let strategy = prop::collection::vec(road(), STEPS_EACH / HOLD_S);
+    let mut roads = || strategy.new_tree(&mut runner).expect("strategy without filters").current();
+    scenarios.into_iter().map(|scenario| RandomScenario { roads: roads(), ..scenario }).collect()
 }
 
 /// A step with what it began from.
@@ -133,7 +142,8 @@ impl RandomScenario {
     fn disturbance(&self, step: usize) -> Disturbance {
         let segment = step / HOLD_S;
         let (from, to) = (self.speeds_m_s[segment], self.speeds_m_s[segment + 1]);
-        let Road { grade, headwind_m_s, warmer_k, sun_share } = self.roads[segment];
+        let Road { grade, headwind_m_s, warmer_k, sun_share } =
+            self.roads.get(segment).copied().unwrap_or(LEVEL);
         let at = |second: usize| from + (to - from) * (second % HOLD_S) as f64 / HOLD_S as f64;
         Disturbance {
             start_speed_m_s: at(step),

@@ -11,6 +11,7 @@ impl Builder<'_> {
             Flow::DRAG,
             Flow::ROLLING,
             Flow::KINETIC,
+            Flow::CLIMB,
             Flow::WHEEL,
             Flow::FRICTION_BRAKE,
             Flow::TRACTION,
