@@ -164,9 +164,11 @@ def test_masses_start_from_the_first_measured_values(driven: Replay, tmp_path: P
     assert run["motor_temperature_degc"][0] == pytest.approx(-4.0)
     assert any("start at 12 degC" in note for note in again.notes)
     # What the user says counts more.
-    changes = {**COLD, "scenario.initial.battery_temperature_degc": 3.0}
-    other = hp_gym.replay(CAR, tmp_path / "trip.csv", overrides=changes)
-    assert other.trajectory["battery_temperature_degc"][0] == pytest.approx(3.0)
+    changes = {"battery_temperature_degc": 3.0, "soft_furnishings_temperature_degc": 5.0}
+    starts = {f"scenario.initial.{name}": degc for name, degc in changes.items()}
+    other = hp_gym.replay(CAR, tmp_path / "trip.csv", overrides={**COLD, **starts})
+    for column, degc in {**changes, "cabin_temperature_degc": 12.0}.items():
+        assert other.trajectory[column][0] == pytest.approx(degc), column
 
 
 def test_ten_samples_a_second_say_what_one_says(driven: Replay, tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from hp_gym.studies import csv_columns
@@ -26,6 +26,8 @@ def test_values_of_every_second_stay_as_they_are(values: list[float]) -> None:
 def test_means_of_fast_samples_keep_their_integral(samples: list[tuple[float, float]]) -> None:
     times_s = np.cumsum([0.0, *(step for step, _ in samples[1:])])
     values = np.array([value for _, value in samples])
+    # A last second that is missed by the round-off of a clock is filled up.
+    assume(abs(times_s[-1] - round(times_s[-1])) > 2e-3)
     seconds = at_full_seconds(times_s, values)
     last_s = np.floor(times_s[-1])
     inside = times_s < last_s
@@ -35,6 +37,13 @@ def test_means_of_fast_samples_keep_their_integral(samples: list[tuple[float, fl
     assert len(seconds) == last_s + 1
     assert seconds[0] == values[0]
     assert seconds[1:].sum() == pytest.approx(integral, abs=1e-9 * max(1.0, np.abs(values).max()))
+
+
+def test_a_last_second_that_a_clock_misses_by_round_off_counts() -> None:
+    times_s = np.array([0.0, 1.0, 1.9999])
+    assert at_full_seconds(times_s, np.array([1.0, 2.0, 3.0])).tolist() == [1.0, 2.0, 3.0]
+    fast_s = np.append(np.arange(20) / 10.0, 1.9999)
+    assert at_full_seconds(fast_s, np.full(21, 7.0)) == pytest.approx([7.0, 7.0, 7.0])
 
 
 def test_ten_samples_a_second_count_as_their_mean() -> None:
