@@ -17,6 +17,7 @@ from hp_gym.studies.replay.measured_quantities import QUANTITIES
 from hp_gym.studies.replay.measured_trace import TraceError
 from hp_gym.studies.replay.replaying import Replay
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 CAR = "crossover_ev"
 COLD = {"scenario.climate.ambient_temperature_degc": -4.0}
 FIGURES = {
@@ -375,3 +376,23 @@ def test_a_scenario_without_a_base_takes_the_settings_of_a_trace(tmp_path: Path)
     path = write(tmp_path / "trip.csv", columns)
     again = hp_gym.replay("compact_ev", path, scenario=tmp_path / "own.toml")
     assert 11.0 < again.trajectory["cabin_temperature_degc"][-1] < 13.0
+
+
+@pytest.mark.parametrize(
+    "car", [*hp_gym.names("vehicle"), *sorted((EXAMPLES / "cars").glob("*.toml"))], ids=str
+)
+def test_every_car_replays_what_was_measured_on_another(
+    car: str | Path, driven: Replay, tmp_path: Path
+) -> None:
+    columns = measured(driven)
+    columns["measured_cabin_temperature_degc"] = columns["measured_cabin_temperature_degc"] + 10.0
+    again = hp_gym.replay(car, write(tmp_path / "trip.csv", columns), overrides=COLD)
+    cabins = [cabin["air"] for cabin in again.trajectory.layout["cabins"]]
+    assert cabins
+    assert all(again.trajectory[air][0] == pytest.approx(6.0) for air in cabins)
+    assert all(pair.deviation is not None for pair in again.figures.values())
+    assert len(again.errors) == len(QUANTITIES)
+    # No two cars are alike, but all drive the same trip in the cold.
+    energy = again.figures["energy_kwh"]
+    assert energy.measured == pytest.approx(driven.figures["energy_kwh"].model)
+    assert 0.4 < energy.model / energy.measured < 2.5
