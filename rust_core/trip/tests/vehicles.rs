@@ -13,7 +13,7 @@ use hp_trip::run::EndReason;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use support::{Step, physics, random_scenarios};
+use support::{Step, on_hills, physics, random_scenarios};
 
 /// Random scenarios for each vehicle besides the default, which has a test of its own with more.
 const RANDOM_SCENARIOS: u32 = 150;
@@ -154,7 +154,7 @@ fn physics_holds_in_every_vehicle_under_random_commands_and_everything_is_at_wor
         // Only a battery that gives nothing leaves pumps and 12 V loads without power.
         let empty = with_every_flow(vehicle, &["battery.discharge_limit.rate_scale=0.0"]);
         let layout = plant.layout();
-        let seen: BTreeSet<usize> = random_scenarios(&plant, RANDOM_SCENARIOS)
+        let seen: BTreeSet<usize> = on_hills(random_scenarios(&plant, RANDOM_SCENARIOS))
             .par_iter()
             .enumerate()
             .flat_map_iter(|(number, scenario)| {
