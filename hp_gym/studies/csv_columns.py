@@ -80,7 +80,7 @@ def read(path: Path) -> Columns:
     told = [
         (number, [cell.strip() for cell in next(csv.reader([line]))])
         for number, line in enumerate(text.splitlines(), start=1)
-        if line.strip() and not line.startswith("#")
+        if line.strip() and not line.lstrip().startswith("#")
     ]
     if not told:
         raise ColumnError(f"{path}: is empty, but must have a line with names of columns")

@@ -108,13 +108,13 @@ def test_errors_second_by_second() -> None:
 
 def trace(folder: Path, *rows: str, head: str = "time_s,speed_km_h,measured_heater_power_w") -> Path:
     path = folder / "trip.csv"
-    path.write_text("\n".join(["# a comment", head, *rows, ""]), encoding="utf-8")
+    path.write_text("\n".join([" # a comment", head, *rows, ""]), encoding="utf-8")
     return path
 
 
 def test_measured_columns_are_read_from_a_trace_that_starts_anywhere(tmp_path: Path) -> None:
     path = trace(tmp_path, "100.5,0,5", "", "101.5,3,7", "102.5,4,8", "103.2,4,9")
-    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes().removeprefix(b"# a comment\n"))
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes().removeprefix(b" # a comment\n"))
     found = measured_trace.of(csv_columns.read(path))
     assert found.columns == ("time_s", "speed_km_h", "measured_heater_power_w")
     assert found.first == {"heater_power_w": 5.0}

@@ -134,7 +134,8 @@ def replay(
         scenario: Name or path of a scenario that gives what the trace does not; by default all that the car
             has is used, the battery is left alone, and it is charged to 80 %.
         controller: As for `simulate`; by default that of the scenario, or `hpcu-modern` without one.
-        overrides: As for `simulate`; they count more than the trace.
+        overrides: As for `simulate`. They count more than first measured temperatures; a constant of the
+            climate or of settings does not count where the trace has its column.
         out: Folder for the figures, the comparison and all signals; none is written by default.
 
     Raises:
