@@ -17,6 +17,7 @@ from hp_gym.trajectory import Trajectory
 if TYPE_CHECKING:
     from hp_gym.studies.calibration.calibrating import calibrate as calibrate
     from hp_gym.studies.optimise.optimising import optimise as optimise
+    from hp_gym.studies.replay.replaying import replay as replay
     from hp_gym.studies.sweep.sweeping import sweep as sweep
 
 __all__ = [

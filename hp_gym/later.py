@@ -9,6 +9,7 @@ from typing import Any, Final
 FUNCTIONS: Final = {
     "calibrate": "hp_gym.studies.calibration.calibrating",
     "optimise": "hp_gym.studies.optimise.optimising",
+    "replay": "hp_gym.studies.replay.replaying",
     "sweep": "hp_gym.studies.sweep.sweeping",
 }
 """Module of each function that stands at the top of the package."""

@@ -1,5 +1,6 @@
 """Every numbered example runs as its own program and shows what it is there to show."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -103,6 +104,19 @@ SHOWN = {
         r"EarlyOff_vs_hpcu: (-?\+?\d+\.\d % energy \([+-]\d|less|more)",
         r"report: \d{6,} bytes",
     ],
+    "18_replay": [
+        r"8\.0 km, arrived, \d\.\d\d kWh",
+        r"from 3\.5 to -2\.0 degC, climbing \d\d m",
+        r"propane: \d\d\.\d bar at most, the table allows 26",
+        *(
+            rf"{figure}: measured \d+\.\d\d, model \d+\.\d\d"
+            for figure in ("energy_kwh", "drive_energy_kwh", "heating_energy_kwh", "heater_last_300_s_w")
+        ),
+        *(
+            rf"{quantity}: [+-]\d+\.\d\d (W|°C) in the mean"
+            for quantity in ("Battery power", "Heater power", "Cabin temperature", "Battery temperature")
+        ),
+    ],
 }
 
 LONG = ("10_optimise", "11_calibrate", "16_train")
@@ -168,6 +182,24 @@ def test_an_example_runs(name: str, pytestconfig: pytest.Config) -> None:
 def test_the_pictures_of_the_five_cars_are_written(tmp_path: Path) -> None:
     shown_by("07_five_cars", tmp_path)
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".png"] * 5
+
+
+def test_a_car_a_log_and_a_refrigerant_of_ones_own_work_from_any_folder_without_rust(tmp_path: Path) -> None:
+    for path in EXAMPLES.glob("18_*"):
+        shutil.copy(path, tmp_path)
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    run = subprocess.run(
+        [sys.executable, "-W", "error", str(tmp_path / "18_replay.py")],
+        cwd=elsewhere,
+        env={**os.environ, "PATH": str(elsewhere), "PYTHONUTF8": "1"},
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+    assert "the table allows 26" in run.stdout
+    assert list(elsewhere.iterdir()) == []
 
 
 @pytest.mark.rust

@@ -92,6 +92,19 @@ def test_the_bare_package_drives_and_writes_the_table_that_pandas_would(tmp_path
     assert (tmp_path / "run.csv").read_bytes() == (tmp_path / "pandas.csv").read_bytes()
 
 
+def test_the_bare_package_replays_a_trip(tmp_path: Path) -> None:
+    rows = "".join(f"{second},{min(second, 30)},{second * 50}\n" for second in range(60))
+    (tmp_path / "trip.csv").write_text(
+        f"time_s,speed_km_h,measured_battery_power_w\n{rows}", encoding="utf-8"
+    )
+    result = hp_gym_command(["replay", "compact_ev", "trip.csv", "--out", "out", "--json"], ALL, tmp_path)
+    assert result.returncode == 0, result.stderr
+    # 50 W more every second, up to 59 s.
+    assert json.loads(result.stdout)["energy_kwh"]["measured"] == 50.0 * 59.0**2 / 2.0 / 3.6e6
+    code = "import hp_gym; print(hp_gym.replay('compact_ev', 'trip.csv')._repr_html_())"
+    assert "<table>" in python(code, ALL, tmp_path).stdout
+
+
 def test_the_bare_package_makes_environments(tmp_path: Path) -> None:
     code = (
         "import gymnasium as gym, hp_gym; from hp_gym.envs.hpcu_policy import HpcuPolicy\n"
@@ -111,6 +124,7 @@ def test_the_bare_package_makes_environments(tmp_path: Path) -> None:
         (["benchmark"], "benchmark"),
         (["run", "ours/commute-minus5", "--out", "run.parquet"], "benchmark"),
         (["run", "ours/commute-minus5", "--plot", "run.png"], "plot"),
+        (["replay", "compact_ev", "trip.csv", "--plot", "trip.png"], "plot"),
         (["reproduce"], "plot"),
         (["calibrate"], "studies"),
         (["tune"], "studies"),
@@ -177,6 +191,7 @@ def test_a_part_without_its_extra_raises_an_error_that_names_it(
         (["data"], ["agents.recording", "cli.record_command"]),
         (["export"], ["agents.policies.equality", "agents.policies.onnx_file"]),
         (["plot"], ["pictures.plotting", "pictures.rendering", "studies.reproduction.figures"]),
+        (["plot"], ["studies.replay.replay_plot"]),
         (
             ["studies"],
             ["studies.calibration.held_out", "studies.tuning.search", "studies.reproduction.figures"],

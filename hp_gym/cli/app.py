@@ -12,6 +12,7 @@ from hp_gym.cli.modes_command import modes
 from hp_gym.cli.optimise_command import optimise
 from hp_gym.cli.output import one_line_for_missing_packages
 from hp_gym.cli.record_command import record
+from hp_gym.cli.replay_command import replay
 from hp_gym.cli.reproduce_command import reproduce
 from hp_gym.cli.run_command import run
 from hp_gym.cli.scenarios_command import scenarios
@@ -35,6 +36,7 @@ for command, kept in (
     (run, ""),
     (scenarios, ""),
     (vehicle, ""),
+    (replay, _AS_BEFORE),
     (reproduce, _AS_BEFORE),
     (validate, _AS_BEFORE),
     (calibrate, _AS_BEFORE),

@@ -33,7 +33,7 @@ def test_version() -> None:
     assert result.stdout == f"hp-gym {hp_gym.__version__}\n"
 
 
-@pytest.mark.parametrize("command", ["benchmark", "run", "scenarios", "reproduce", "calibrate"])
+@pytest.mark.parametrize("command", ["benchmark", "run", "scenarios", "replay", "reproduce", "calibrate"])
 def test_help_tells_of_every_command(command: str) -> None:
     assert command in hp_gym_command("--help").stdout
     assert hp_gym_command(command, "--help").exit_code == 0

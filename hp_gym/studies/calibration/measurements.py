@@ -1,6 +1,5 @@
 """Measurements of a calibration: traces and totals of drives, each with its uncertainty and its role."""
 
-import csv
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,17 +11,16 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from hp_gym import _core
-from hp_gym.files import read_bytes
 from hp_gym.messages import OneLineError
 from hp_gym.near_names import unknown
 from hp_gym.overrides import assignments
+from hp_gym.studies import csv_columns
 
 ROLES: Final = ("fit", "check", "held-back")
 """What a measurement is for: the fit sees it; the fit is checked by it; it is looked at once, at the end."""
 
 TIME: Final = "time_s"
 
-_LARGEST_BYTES: Final = 64 * 2**20
 _CHECKED: Final = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 _Name = Annotated[str, Field(min_length=1, max_length=300)]
 _Number = Annotated[float, Field(ge=-1e12, le=1e12)]
@@ -151,7 +149,7 @@ def _measurement(table: MeasurementTable, folder: Path, vehicle: str, controller
     experiment = _core.Experiment(table.scenario, controller, overrides, 1, vehicle)
     columns: Mapping[str, NDArray[np.float64]] = {}
     if table.file is not None:
-        columns = _columns(folder / table.file, _wanted(table))
+        columns = _columns(folder / table.file, table)
     traces = []
     for row in table.trace:
         if row.signal not in experiment.signal_names:
@@ -167,27 +165,16 @@ def _measurement(table: MeasurementTable, folder: Path, vehicle: str, controller
     return Measurement(table.name, table.role, table.scenario, overrides, tuple(traces), totals)
 
 
-def _wanted(table: MeasurementTable) -> list[str]:
-    return [TIME, *(row.column or row.signal for row in table.trace)]
-
-
-def _columns(path: Path, wanted: Sequence[str]) -> dict[str, NDArray[np.float64]]:
-    """Columns of a .csv file with a head line; NaN where a cell is empty."""
-    lines = read_bytes(path, _LARGEST_BYTES).decode("utf-8-sig", errors="replace").splitlines()
-    rows = list(csv.reader(line for line in lines if line.strip() and not line.startswith("#")))
-    head = [name.strip() for name in rows[0]] if rows else []
-    for name in wanted:
-        if name not in head:
-            raise MeasurementError(f"{path}: {unknown('column', name, head) if head else 'is empty'}")
-    columns = {}
-    for name in wanted:
-        place = head.index(name)
-        try:
-            cells = [row[place].strip() for row in rows[1:]]
-            columns[name] = np.array([float(cell) if cell else math.nan for cell in cells])
-        except (ValueError, IndexError) as error:
-            raise MeasurementError(f"{path}: column `{name}`: {error}") from error
-    return columns
+def _columns(path: Path, table: MeasurementTable) -> dict[str, NDArray[np.float64]]:
+    """What a measurement needs of a file; NaN where nothing was measured."""
+    try:
+        columns = csv_columns.read(path)
+        return {
+            name: columns.numbers(name, gaps=True)
+            for name in (TIME, *(row.column or row.signal for row in table.trace))
+        }
+    except csv_columns.ColumnError as error:
+        raise MeasurementError(str(error)) from error
 
 
 def _trace(name: str, row: TraceTable, columns: Mapping[str, NDArray[np.float64]], duration_s: int) -> Trace:

@@ -9,9 +9,9 @@ import numpy as np
 
 from hp_gym import _core
 from hp_gym.overrides import assignments
-from hp_gym.studies import planned_runs
+from hp_gym.studies import car_settings, planned_runs
 from hp_gym.studies.planned_runs import REFUSED, Planned
-from hp_gym.studies.published_values import car_settings, speed_traces
+from hp_gym.studies.published_values import speed_traces
 from hp_gym.studies.published_values.published import Published, TripExperiment, ValidationFileError
 from hp_gym.studies.published_values.rigs import Figures
 

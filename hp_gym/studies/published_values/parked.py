@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from hp_gym import _core
 from hp_gym.overrides import assignments
-from hp_gym.studies.published_values import car_settings, speed_traces
+from hp_gym.studies import car_settings
+from hp_gym.studies.published_values import speed_traces
 from hp_gym.studies.published_values.published import ParkedExperiment, Published
 from hp_gym.studies.published_values.rigs import Figures
 

@@ -1,4 +1,4 @@
-"""What rows of cars have in common: weather, what the rules may use, and heat requests that bind nothing."""
+"""What studies of whole cars share: weather, what the rules may use, and heat requests that bind nothing."""
 
 from collections.abc import Mapping
 from typing import Any, Final

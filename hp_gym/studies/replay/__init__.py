@@ -1,0 +1,1 @@
+"""Measured trips driven by the model, and what both came to."""
