@@ -56,7 +56,7 @@ def test_search_repeats_with_its_seed_and_never_falls_behind_where_it_starts(fam
     band = Band(0, 10)
     with objective(band, 4, 0) as goal:
         found = [
-            search.tuned(goal, family, rule_choices.PAPER, search.Effort(12, 4, 5), lambda: None)
+            search.tuned(goal, family, [rule_choices.PAPER], search.Effort(12, 4, 5), lambda: None)
             for _ in range(2)
         ]
         assert found[0] == found[1]

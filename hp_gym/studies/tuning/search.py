@@ -1,6 +1,6 @@
 """The two searches: every combination of modes; and modes, set points and thresholds, as `optimise` does."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -69,21 +69,22 @@ def best_mode(objective: Objective, advance: Advance) -> Result:
 
 
 def tuned(
-    objective: Objective, family: RuleFamily, modes: Choices, effort: Effort, advance: Advance
+    objective: Objective, family: RuleFamily, known: Sequence[Choices], effort: Effort, advance: Advance
 ) -> Result:
     """Searches modes, set points and thresholds with Optuna's multivariate TPE, one trial after the other.
 
     Args:
         objective: What to make large.
         family: Rules, and what of them is searched.
-        modes: Best modes, tried third: after the rules as they are, and those with the battery heated.
+        known: Choices that were good elsewhere, such as the best of a colder band. They are tried after the
+            rules as they are, and those with the battery heated; what they do not say stays as it is.
         effort: Number of evaluations, and seed of the sampler.
         advance: Called after each trial.
     """
     axes, start = family.axes_in(objective.band), family.start(objective.band)
     study = search_loop.of_one_process(effort.seed, max(10, effort.trials // 8))
-    for known in (start.values, {"strategy.battery": "heat"}, modes.values):
-        values = {**start.values, **{key: value for key, value in known.items() if key in start.values}}
+    for told in ({}, {"strategy.battery": "heat"}, *(choices.values for choices in known)):
+        values = {**start.values, **{key: value for key, value in told.items() if key in start.values}}
         study.enqueue_trial(search_loop.as_drawn(axes, values) or {}, skip_if_exists=True)
     search_loop.search(
         study,

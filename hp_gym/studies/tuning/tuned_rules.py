@@ -91,6 +91,9 @@ def _search(
                 modes = search.best_mode(goal, lambda: progress.advance(task))
                 found[BEST_MODE].append((band, modes))
                 for family in families:
-                    result = search.tuned(goal, family, modes.choices, effort, lambda: progress.advance(task))
+                    colder = [result.choices for _, result in found[family.name][-1:]]
+                    result = search.tuned(
+                        goal, family, [modes.choices, *colder], effort, lambda: progress.advance(task)
+                    )
                     found[family.name].append((band, result))
     return found
