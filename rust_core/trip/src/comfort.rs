@@ -13,39 +13,30 @@ pub const CO2_HIGHEST_PPM: f64 = 1500.0;
 /// Running totals of one reading of the cabin's temperature.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Course {
-    elapsed_s: f64,
     first_near_s: f64,
     outside_k_s: f64,
-    afterwards_s: f64,
     discomfort_afterwards_k_s: f64,
 }
 
 impl Default for Course {
     fn default() -> Self {
-        Self {
-            elapsed_s: 0.0,
-            first_near_s: f64::NAN,
-            outside_k_s: 0.0,
-            afterwards_s: 0.0,
-            discomfort_afterwards_k_s: 0.0,
-        }
+        Self { first_near_s: f64::NAN, outside_k_s: 0.0, discomfort_afterwards_k_s: 0.0 }
     }
 }
 
 impl Course {
-    /// Adds a second that ended at a temperature.
+    /// Adds a second that ended at a time and a temperature.
     #[inline]
-    pub fn add(&mut self, temperature_degc: f64) {
-        self.elapsed_s += CONTROL_PERIOD_S;
+    pub fn add(&mut self, time_s: f64, temperature_degc: f64) {
         let deviation_k = (temperature_degc - COMFORT_TEMPERATURE_DEGC).abs();
         self.outside_k_s += (deviation_k - NEAR_COMFORT_K).max(0.0) * CONTROL_PERIOD_S;
-        if self.first_near_s.is_nan() && deviation_k <= NEAR_COMFORT_K {
-            self.first_near_s = self.elapsed_s;
+        if self.first_near_s.is_nan() {
+            if deviation_k > NEAR_COMFORT_K {
+                return;
+            }
+            self.first_near_s = time_s;
         }
-        if !self.first_near_s.is_nan() {
-            self.afterwards_s += CONTROL_PERIOD_S;
-            self.discomfort_afterwards_k_s += deviation_k * CONTROL_PERIOD_S;
-        }
+        self.discomfort_afterwards_k_s += deviation_k * CONTROL_PERIOD_S;
     }
 
     /// Time until the cabin is first near comfort [s]; not a number if it never is.
@@ -60,10 +51,11 @@ impl Course {
         self.outside_k_s
     }
 
-    /// Mean distance from 22 degC from when the cabin was first near comfort [K]; not a number if it never was.
+    /// Mean distance from 22 degC until a time, from when the cabin was first near comfort, that second included [K]; not a
+    /// number if it never was.
     #[must_use]
-    pub fn discomfort_afterwards_k(&self) -> f64 {
-        self.discomfort_afterwards_k_s / self.afterwards_s
+    pub fn discomfort_afterwards_k(&self, time_s: f64) -> f64 {
+        self.discomfort_afterwards_k_s / (time_s - self.first_near_s + CONTROL_PERIOD_S)
     }
 }
 
@@ -73,7 +65,8 @@ mod tests {
 
     fn course(temperatures_degc: &[f64]) -> Course {
         let mut course = Course::default();
-        temperatures_degc.iter().for_each(|&degc| course.add(degc));
+        let times_s = (1..).map(f64::from);
+        times_s.zip(temperatures_degc).for_each(|(time_s, &degc)| course.add(time_s, degc));
         course
     }
 
@@ -83,7 +76,7 @@ mod tests {
             let found = course(&temperatures_degc);
             assert_eq!(found.time_to_near_comfort_s(), 3.0);
             assert!((found.outside_near_comfort_k_s() - 8.1).abs() < 1e-12);
-            assert_eq!(found.discomfort_afterwards_k(), 2.5);
+            assert_eq!(found.discomfort_afterwards_k(4.0), 2.5);
         }
     }
 
@@ -92,13 +85,13 @@ mod tests {
         let found = course(&[20.0, 18.0, 16.0]);
         assert_eq!(found.time_to_near_comfort_s(), 1.0);
         assert_eq!(found.outside_near_comfort_k_s(), 2.0);
-        assert_eq!(found.discomfort_afterwards_k(), 4.0);
+        assert_eq!(found.discomfort_afterwards_k(3.0), 4.0);
     }
 
     #[test]
     fn a_cabin_that_never_comes_near_comfort_has_no_time_and_no_afterwards() {
         let found = course(&[0.0, 10.0]);
-        assert!(found.time_to_near_comfort_s().is_nan() && found.discomfort_afterwards_k().is_nan());
+        assert!(found.time_to_near_comfort_s().is_nan() && found.discomfort_afterwards_k(2.0).is_nan());
         assert_eq!(found.outside_near_comfort_k_s(), 26.0);
     }
 }

@@ -152,8 +152,9 @@ impl Summary {
                 self.first_comfort_s = self.duration_s;
             }
         }
-        self.air.add(cabin_degc);
-        self.equivalent.add(of_cabin(&layout.cabins[0], &after.temperatures_k, record.supply_air_kg_s));
+        self.air.add(self.duration_s, cabin_degc);
+        let equivalent_degc = of_cabin(&layout.cabins[0], &after.temperatures_k, record.supply_air_kg_s);
+        self.equivalent.add(self.duration_s, equivalent_degc);
         let battery_k = after.temperatures_k[layout.battery.index()];
         self.final_soc = plant.battery.usable_state_of_charge(&after.battery, battery_k);
         self.final_charge_soc = plant.battery.charge_left(&after.battery);
@@ -225,10 +226,10 @@ impl Summary {
         [
             ("time_to_near_comfort_s", air.time_to_near_comfort_s()),
             ("outside_near_comfort_k_s", air.outside_near_comfort_k_s()),
-            ("discomfort_afterwards_k", air.discomfort_afterwards_k()),
+            ("discomfort_afterwards_k", air.discomfort_afterwards_k(self.duration_s)),
             ("equivalent_time_to_near_comfort_s", equivalent.time_to_near_comfort_s()),
             ("equivalent_outside_near_comfort_k_s", equivalent.outside_near_comfort_k_s()),
-            ("equivalent_discomfort_afterwards_k", equivalent.discomfort_afterwards_k()),
+            ("equivalent_discomfort_afterwards_k", equivalent.discomfort_afterwards_k(self.duration_s)),
             ("co2_above_1500_ppm_s", self.co2_above_highest_s),
         ]
     }
