@@ -35,6 +35,8 @@ __all__ = [
     "signals",
     "summaries",
     "totals",
+    "trace",
+    "trace_columns",
     "vehicle_layout",
 ]
 

@@ -215,8 +215,8 @@ def test_a_state_is_refused_by_other_settings_and_when_damaged() -> None:
     for damaged, why in [(b"", "0 bytes"), (b"x" * 99, "something else"), (state[:-3], "damaged")]:
         with pytest.raises(hp_gym.ConfigurationError, match=why):
             env.set_state(damaged)
-    with pytest.raises(hp_gym.ConfigurationError, match="version 9"):
-        env.set_state(state[:4] + b"\x09\x00" + state[6:])
+    with pytest.raises(hp_gym.ConfigurationError, match="version 10"):
+        env.set_state(state[:4] + b"\x0a\x00" + state[6:])
     env.step(env.action_space.sample())
 
 

@@ -127,6 +127,8 @@ struct Segment {
     start_m_s: f64,
     end_m_s: f64,
     speed_m_s: f64,
+    /// Of the air along the vehicle.
+    air_speed_m_s: f64,
 }
 
 /// Traction of a segment.
@@ -479,8 +481,7 @@ impl Plant {
         let flows = &mut record.flows;
         let mut drive = self.road(sight, state, &segment, flows);
         self.constant_loads::<S>(sight, period, flows);
-        let air_speed_m_s = sight.disturbance.air_speed_m_s(segment.speed_m_s);
-        let moment = air_side::Moment { step_s: segment.step_s, air_speed_m_s };
+        let moment = air_side::Moment { step_s: segment.step_s, air_speed_m_s: segment.air_speed_m_s };
         let blown_w_k = air_side::step::<S>(sight, state, period, moment, record);
         let flows = &mut record.flows;
 
@@ -494,13 +495,7 @@ impl Plant {
         let flows = &mut record.flows;
         let spare_w = left_w.max(0.0);
 
-        let conditions = self.conditions::<S>(
-            sight,
-            state,
-            period,
-            &blown_w_k,
-            sight.disturbance.air_speed_m_s(segment.speed_m_s),
-        );
+        let conditions = self.conditions::<S>(sight, state, period, &blown_w_k, segment.air_speed_m_s);
         let start_k = state.temperatures_k;
         let given = Given {
             capacities_j_k: &self.network.capacities_j_k,
@@ -574,7 +569,9 @@ impl Plant {
         let start_m_s = disturbance.start_speed_m_s + acceleration * step_s * f64::from(part);
         let end_m_s = start_m_s + acceleration * step_s;
         let start_m_s = (start_m_s - slower_m_s).max(0.0);
-        Segment { step_s, start_m_s, end_m_s, speed_m_s: 0.5 * (start_m_s + end_m_s) }
+        let speed_m_s = 0.5 * (start_m_s + end_m_s);
+        let air_speed_m_s = disturbance.air_speed_m_s(speed_m_s);
+        Segment { step_s, start_m_s, end_m_s, speed_m_s, air_speed_m_s }
     }
 
     /// The same piece, ended as fast as motor and battery allow: the vehicle falls behind.
@@ -587,8 +584,11 @@ impl Plant {
         segment: &Segment,
         supply: TractionSupply,
     ) -> Segment {
-        let ending =
-            |end_m_s: f64| Segment { end_m_s, speed_m_s: 0.5 * (segment.start_m_s + end_m_s), ..*segment };
+        let ending = |end_m_s: f64| {
+            let speed_m_s = 0.5 * (segment.start_m_s + end_m_s);
+            let air_speed_m_s = sight.disturbance.air_speed_m_s(speed_m_s);
+            Segment { end_m_s, speed_m_s, air_speed_m_s, ..*segment }
+        };
         ending(reachable_speed_m_s(segment.end_m_s, supply, |end_m_s| {
             let (road, powertrain) = self.pull(sight, state, &ending(end_m_s));
             (road.wheel_power_w(), powertrain)
@@ -599,7 +599,7 @@ impl Plant {
     #[inline(always)]
     fn pull(&self, sight: Sight<'_>, state: &State, segment: &Segment) -> (RoadLoad, Powertrain<'_>) {
         let vehicle = &self.vehicle;
-        let Segment { step_s, start_m_s, end_m_s, speed_m_s } = *segment;
+        let Segment { step_s, start_m_s, end_m_s, speed_m_s, .. } = *segment;
         let road = vehicle.body.road_load(start_m_s, end_m_s, step_s, &sight.disturbance.road());
         let oil_k = state.temperatures_k[sight.shape.transmission.index()];
         let motor_k = state.temperatures_k[sight.shape.motor.index()];
