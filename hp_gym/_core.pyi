@@ -407,7 +407,7 @@ def config_text(kind_word: str, name: str) -> str:
     """Text of a configuration file by name or path."""
 
 def trace(path: str) -> dict[str, NDArray[np.float64]]:
-    """Columns of a trace file at full seconds, under their names in the file; `time_s` counts from 0 (docs/traces.md).
+    """Columns of a trace file at full seconds, under their names; `time_s` counts from 0 (docs/traces.md).
 
     Raises:
         ConfigurationError: There is no such file, or it is no trace.

@@ -101,13 +101,8 @@ impl Experiment {
         )
         .map_err(|violation| violation.in_file(scenario_name))?;
         let cycle = DriveCycle::load(&scenario.cycle).map_err(named)?;
-        for series in scenario.climate_series.as_deref().into_iter().chain(scenario.settings.trace()) {
-            series.check_length(&scenario.cycle, cycle.duration_s()).map_err(named)?;
-        }
-        let aperture_m2 = plant.vehicle.body.solar_aperture_m2;
-        let weather = scenario.climate_series.as_deref();
         Ok(Self {
-            weather: weather.map(|series| Arc::new(Weather::of(series, &scenario.climate, aperture_m2))),
+            weather: weather(&scenario, &plant, &cycle).map_err(named)?,
             cycle,
             controller: controller.into(),
             rules: Arc::new(file.at(scenario.climate.ambient_temperature_degc, &scenario.strategy, layout)),
@@ -166,4 +161,18 @@ impl Experiment {
         }
         disturbance
     }
+}
+
+/// Weather of a scenario, where it changes, once all its series are long enough for its cycle.
+fn weather(
+    scenario: &ScenarioParameters,
+    plant: &Plant,
+    cycle: &DriveCycle,
+) -> PlantResult<Option<Arc<Weather>>> {
+    let climate = scenario.climate_series.as_deref();
+    for series in climate.into_iter().chain(scenario.settings.trace()) {
+        series.check_length(&scenario.cycle, cycle.duration_s())?;
+    }
+    let aperture_m2 = plant.vehicle.body.solar_aperture_m2;
+    Ok(climate.map(|series| Arc::new(Weather::of(series, &scenario.climate, aperture_m2))))
 }

@@ -50,6 +50,10 @@ impl<'a> Road<'a> {
     /// Sine and cosine of the slope.
     #[inline]
     fn slope(&self) -> (f64, f64) {
+        // Most roads: no root and no quotient in their steps.
+        if self.grade == 0.0 {
+            return (0.0, 1.0);
+        }
         let cosine = (1.0 + self.grade * self.grade).sqrt().recip();
         (self.grade * cosine, cosine)
     }
