@@ -6,7 +6,6 @@
 //! interpolated.
 
 use super::reading::median;
-use hp_plant::numerics::interpolation::LinearTable;
 
 /// Below this median interval a trace counts as sampled faster than once a second [s]; clocks of 1 Hz are that exact.
 const FAST_S: f64 = 0.9;
@@ -35,9 +34,9 @@ impl Seconds {
 
     /// Values at full seconds of what has values at times.
     pub fn resampled(&self, times_s: &[f64], values: &[f64]) -> Vec<f64> {
-        let table = LinearTable::new(times_s, values);
+        let line = Line { times_s, values };
         if !self.averages {
-            return (0..=self.last_s).map(|second| table.at(second as f64)).collect();
+            return (0..=self.last_s).map(|second| line.at(second as f64)).collect();
         }
         let last_s = self.last_s as f64;
         let mut first = 0;
@@ -46,19 +45,38 @@ impl Seconds {
             while times_s[first + 1] <= from_s && first + 2 < times_s.len() {
                 first += 1;
             }
-            mean(&table, &times_s[first + 1..], (from_s, to_s))
+            mean(&line, &times_s[first + 1..], (from_s, to_s))
         };
         (0..=self.last_s).map(around).collect()
     }
 }
 
-/// Mean of a table between two times; `times_s` begins with its first point after the first of them.
-fn mean(table: &LinearTable, times_s: &[f64], (from_s, to_s): (f64, f64)) -> f64 {
+/// A quantity straight between its rows. Tables of the plant compare with every point, which suits a few; a log has many rows.
+struct Line<'a> {
+    times_s: &'a [f64],
+    values: &'a [f64],
+}
+
+impl Line<'_> {
+    /// Value at a time; before the first row its value, after the last one likewise.
+    fn at(&self, time_s: f64) -> f64 {
+        let next = self.times_s.partition_point(|&row_s| row_s <= time_s);
+        let row = next.saturating_sub(1);
+        if next == 0 || next == self.times_s.len() {
+            return self.values[row];
+        }
+        let slope = (self.values[next] - self.values[row]) / (self.times_s[next] - self.times_s[row]);
+        self.values[row] + slope * (time_s - self.times_s[row])
+    }
+}
+
+/// Mean of a trace between two times; `times_s` begins with its first row after the first of them.
+fn mean(line: &Line<'_>, times_s: &[f64], (from_s, to_s): (f64, f64)) -> f64 {
     let mut integral = 0.0;
-    let (mut last_s, mut last) = (from_s, table.at(from_s));
+    let (mut last_s, mut last) = (from_s, line.at(from_s));
     let inner = times_s.iter().copied().take_while(|&time_s| time_s < to_s).filter(|&time_s| time_s > from_s);
     for time_s in inner.chain([to_s]) {
-        let value = table.at(time_s);
+        let value = line.at(time_s);
         integral += 0.5 * (last + value) * (time_s - last_s);
         (last_s, last) = (time_s, value);
     }
