@@ -16,7 +16,7 @@ from hp_gym.agents.controllers import resolve
 from hp_gym.agents.controllers.rule_based import rules
 from hp_gym.json_text import plain
 from hp_gym.studies.benchmark import benchmark_plan, grid, matched
-from hp_gym.studies.benchmark.report import energy_flows, headline, traces, write_report
+from hp_gym.studies.benchmark.report import claims, energy_flows, headline, traces, write_report
 from hp_gym.studies.benchmark.report.layout import Layout
 from hp_gym.studies.benchmark.report.page import render
 from hp_gym.studies.benchmark.report.pareto import hull
@@ -208,6 +208,26 @@ def test_without_learned_controllers_the_headline_says_so(only_rules):
         assert "ablations" not in ids
         assert ("runs" in ids) == bool(each.trajectories)
     assert "No learned controller took part" in render(bare)
+
+
+def test_the_page_claims_what_the_headline_claims_and_nothing_else(benchmark):
+    told = {
+        "best_rule": "careful",
+        "learned": "thrifty",
+        "learned_vs_best_rule": None,
+        "best_rule_vs_hpcu": {"attributable_energy_pct": -7.5, "ci95": [-9.0, -6.0], "passed_pct": 98.0},
+        "reasons": {"learned_vs_best_rule": "`thrifty` passes too few trips", "best_rule_vs_hpcu": None},
+        "rests_on": {
+            "learned_vs_best_rule": None,
+            "best_rule_vs_hpcu": {"pairs": 12, "bands_without_pairs": ["-20..0"]},
+        },
+    }
+    learned, rule = claims.sentences(Layout(benchmark.summary | {"headline": told}))
+    assert "no claim</strong>, because thrifty passes too few trips." in learned
+    assert "%" not in learned
+    assert "/headline/best_rule_vs_hpcu/attributable_energy_pct" in rule
+    assert "None of these trips is in -20..0" in rule
+    assert learned in render(replace(benchmark, summary=benchmark.summary | {"headline": told}))
 
 
 def test_ablations_stand_in_a_section_of_their_own(benchmark):

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
     from hp_gym.overrides import Value
 
-FILES: Final = ("hpcu", "hpcu-modern", "hpcu-best-mode", "hpcu-tuned")
+FILES: Final = ("hpcu", "hpcu-modern", "hpcu-best-mode", "hpcu-tuned-strict", "hpcu-tuned")
 """Rule-based controllers of the comparison, each a file in configs/controllers."""
 
 # The PTC warms the high temperature circuit; what it warms there is to reach the cabin alone.

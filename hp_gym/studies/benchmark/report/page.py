@@ -12,7 +12,7 @@ from plotly.offline import get_plotlyjs
 
 from hp_gym.files import atomic_write
 from hp_gym.json_text import plain
-from hp_gym.studies.benchmark.report import band_charts, headline, kpi_rows, layout, traces
+from hp_gym.studies.benchmark.report import band_charts, claims, headline, kpi_rows, layout, traces
 from hp_gym.studies.benchmark.report.palette import styles
 from hp_gym.studies.benchmark.report.pareto import HIDDEN, pareto
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from hp_gym.studies.benchmark.results import Benchmark
 
 _TEMPLATES: Final = Path(__file__).parent / "templates"
-_FAVOURITES: Final = ("hpcu-tuned", "hpcu-best-mode", "ptc-only")
+_FAVOURITES: Final = ("hpcu-tuned-strict", "hpcu-tuned", "hpcu-best-mode", "ptc-only")
 
 
 def write_report(benchmark: Benchmark, path: Path) -> None:
@@ -61,6 +61,7 @@ def render(benchmark: Benchmark) -> str:
         summary=facts.summary,
         data=facts.summary.data,
         layout=layout,
+        claims=claims,
         headline=headline,
         kpis=kpi_rows,
         looks=looks,

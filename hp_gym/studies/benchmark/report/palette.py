@@ -13,6 +13,8 @@ _OWN: Final[Mapping[str, str]] = {
     "hpcu": "#d55e00",
     "hpcu-best-mode": "#e69f00",
     "hpcu-tuned": "#009e73",
+    "hpcu-tuned-strict": "#00563f",
+    "hpcu-modern": "#b59a00",
     "ppo": "#0072b2",
     "ptc-only": "#cc79a7",
     "random": "#9a9a9a",
