@@ -15,9 +15,9 @@ def benchmark(
         list[str] | None,
         typer.Argument(
             metavar="[CONTROLLER]...",
-            help="off, random, ptc-only, hpcu, hpcu-modern, hpcu-best-mode, hpcu-tuned-strict, hpcu-tuned, ppo, "
-            "a policy file (.zip if allowed), a controller file, or module:Class; all named ones by default. The rules "
-            "that others are compared with always run.",
+            help="off, random, ptc-only, hpcu, hpcu-modern, hpcu-best-mode, hpcu-tuned-strict, hpcu-tuned, "
+            "ppo, a policy file (.zip if allowed), a controller file, or module:Class; all named ones by "
+            "default. The rules that others are compared with always run.",
             show_default=False,
         ),
     ] = None,

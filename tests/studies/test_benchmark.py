@@ -126,6 +126,7 @@ def test_every_controller_drives_every_scenario(runs: pd.DataFrame) -> None:
         "hpcu",
         "hpcu-modern",
         "hpcu-tuned",
+        "hpcu-tuned-strict",
         "off",
         "bench_classes:Same",
         "random",
@@ -282,6 +283,19 @@ def test_the_references_own_file_may_be_named_but_no_other_of_its_name(
     assert all(word in result.stderr for word in (str(file), "comfort", "another name"))
 
 
+def test_own_rules_get_the_rows_that_learned_controllers_get(
+    benchmark: Callable[..., Result], tmp_path: Path
+) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text('base = "hpcu"\n', encoding="utf-8")
+    assert benchmark(file, "ptc-only", out=tmp_path / "out").exit_code == 0
+    told = json.loads((tmp_path / "out" / results_folder.SUMMARY).read_text(encoding="utf-8"))
+    gains = told["gains"]
+    assert {name.partition("_vs_")[0] for name in gains} == {"mine"}
+    assert gains["mine_vs_hpcu"]["discomfort_k"] == 0.0
+    assert told["headline"]["learned"] is None
+
+
 def test_stranded_trips_are_counted_and_leave_no_gain(
     benchmark: Callable[..., Result], tmp_path: Path
 ) -> None:
@@ -291,9 +305,9 @@ def test_stranded_trips_are_counted_and_leave_no_gain(
     runs = pd.read_parquet(tmp_path / results_folder.RUNS)
     stranded = int(runs.loc[runs["controller"] == "bench_classes:Thirsty", "stranded"].sum())
     assert stranded > 0
-    rules = dict.fromkeys(("hpcu", "hpcu-modern", "hpcu-tuned"), 0)
+    rules = dict.fromkeys(("hpcu", "hpcu-modern", "hpcu-tuned", "hpcu-tuned-strict"), 0)
     assert told["stranded_trips"] == {**rules, "bench_classes:Thirsty": stranded}
-    assert len(runs) == 16
+    assert len(runs) == 20
     gain = told["gains"]["bench_classes:Thirsty_vs_hpcu"]
     assert gain["attributable_energy_pct"] is None
     assert "stranded" in result.stdout

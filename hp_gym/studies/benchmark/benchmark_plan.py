@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from threadpoolctl import threadpool_limits
 
-from hp_gym.agents.controllers import ControllerError
+from hp_gym.agents.controllers import DEFAULTS, ControllerError
 from hp_gym.agents.controllers.learned import ABLATION
 from hp_gym.agents.controllers.learned import REFERENCE as SHIPPED
 from hp_gym.agents.controllers.rule_based import FILES
@@ -102,7 +102,8 @@ def run(
     learned = list(dict.fromkeys(each.name for each in plan.controllers if each.learned))
     ablations = [name for name in learned if name.startswith(ABLATION)]
     ablation_gains = summary.all_gains(evidence, ablations) or None
-    found = _summary(plan, evidence, [name for name in learned if name not in ablations], ablation_gains)
+    claimed = [name for name in learned if name not in ablations]
+    found = _summary(plan, evidence, claimed, ablation_gains)
     return Benchmark(runs, fronts, found, shown, ablation_gains), front_runs
 
 
@@ -111,7 +112,7 @@ def _summary(
 ) -> dict[str, Any]:
     return {
         **_claims(plan, evidence.runs, learned).figures(),
-        "gains": summary.all_gains(evidence, learned),
+        "gains": summary.all_gains(evidence, [*learned, *_own_rules(plan)]),
         "limit_breaches": summary.counts(evidence.runs, "limit_breaches"),
         "stranded_trips": summary.counts(evidence.runs, "stranded"),
         "controllers": summary.controllers(evidence),
@@ -124,6 +125,13 @@ def _summary(
         "versions": environment_facts.versions(),
         "hardware": environment_facts.hardware(),
     }
+
+
+def _own_rules(plan: Plan) -> list[str]:
+    """Rules of the user's own: they get the same rows as what has learned."""
+    return list(
+        dict.fromkeys(each.name for each in plan.controllers if each.rules and each.name not in DEFAULTS)
+    )
 
 
 def _claims(plan: Plan, runs: pd.DataFrame, learned: Sequence[str]) -> Claims:
@@ -184,5 +192,5 @@ def _trajectories(plan: Plan, files: dict[str, Path]) -> dict[str, dict[str, pd.
 def needed_rules(names: Iterable[str], available: Iterable[str]) -> list[str]:
     """Names of controllers with the rules put first that others are compared with, where there are such."""
     given = list(names)
-    compared = [summary.PAPER, REFERENCE, *(name for name in FILES[-1:] if name in available)]
+    compared = [summary.PAPER, REFERENCE, *(name for name in FILES[-2:] if name in available)]
     return [*(name for name in compared if name not in given), *given]
