@@ -99,7 +99,7 @@ SHOWN = {
         *(rf"{name}: \d\.\d\d kWh, \d+\.\d K off target, -\d+\.\d points" for name in ("policy", "rules")),
     ],
     "17_benchmark": [
-        r"\d+ trips, 48 of them",
+        r"\d+ trips, 80 of them",
         *(rf"{name}: \d\.\d\d kWh, \d+\.\d K off target" for name in ("EarlyOff", "hpcu", "hpcu-tuned")),
         r"EarlyOff_vs_hpcu: (-?\+?\d+\.\d % energy \([+-]\d|less|more)",
         r"report: \d{6,} bytes",

@@ -62,7 +62,7 @@ def outcome(command: str, told: dict[str, Any]) -> float:
         case "record":
             return -float(told["mean_return"])
         case _:
-            return -float(told["tuned"][0]["paper_score"])
+            return -float(told["hpcu_tuned"][0]["paper_score"])
 
 
 @pytest.mark.parametrize("command", [name for name in WORDS if name != "sweep"])
