@@ -16,7 +16,7 @@ from hp_gym.agents.controllers import resolve
 from hp_gym.agents.controllers.rule_based import rules
 from hp_gym.json_text import plain
 from hp_gym.studies.benchmark import benchmark_plan, grid, matched
-from hp_gym.studies.benchmark.report import claims, energy_flows, headline, traces, write_report
+from hp_gym.studies.benchmark.report import claim_sentences, energy_flows, headline, traces, write_report
 from hp_gym.studies.benchmark.report.layout import Layout
 from hp_gym.studies.benchmark.report.page import render
 from hp_gym.studies.benchmark.report.pareto import hull
@@ -222,7 +222,7 @@ def test_the_page_claims_what_the_headline_claims_and_nothing_else(benchmark):
             "best_rule_vs_hpcu": {"pairs": 12, "bands_without_pairs": ["-20..0"]},
         },
     }
-    learned, rule = claims.sentences(Layout(benchmark.summary | {"headline": told}))
+    learned, rule = claim_sentences.sentences(Layout(benchmark.summary | {"headline": told}))
     assert "no claim</strong>, because thrifty passes too few trips." in learned
     assert "%" not in learned
     assert "/headline/best_rule_vs_hpcu/attributable_energy_pct" in rule

@@ -12,7 +12,7 @@ from plotly.offline import get_plotlyjs
 
 from hp_gym.files import atomic_write
 from hp_gym.json_text import plain
-from hp_gym.studies.benchmark.report import band_charts, claims, headline, kpi_rows, layout, traces
+from hp_gym.studies.benchmark.report import band_charts, claim_sentences, headline, kpi_rows, layout, traces
 from hp_gym.studies.benchmark.report.palette import styles
 from hp_gym.studies.benchmark.report.pareto import HIDDEN, pareto
 
@@ -61,7 +61,7 @@ def render(benchmark: Benchmark) -> str:
         summary=facts.summary,
         data=facts.summary.data,
         layout=layout,
-        claims=claims,
+        claims=claim_sentences,
         headline=headline,
         kpis=kpi_rows,
         looks=looks,
