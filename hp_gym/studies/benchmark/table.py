@@ -150,7 +150,7 @@ def _headline(summary: Mapping[str, Any]) -> Iterable[str]:
         else:
             low, high = (_signed(end, 1) for end in claim["ci95"])
             energy, passed = _signed(claim["attributable_energy_pct"], 1), claim["passed_pct"]
-            told = f"{words}: {energy} % energy ({low} .. {high}), {passed:.0f} % of its trips pass."
+            told = f"{words}: {energy} % energy ({low} .. {high}), {passed:.1f} % of its trips pass."
             evidence = headline["rests_on"][name]
             empty = ", ".join(evidence["bands_without_pairs"])
             none_there = f" None of them is in {empty}: there it says nothing." if empty else ""

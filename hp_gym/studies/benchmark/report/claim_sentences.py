@@ -40,6 +40,6 @@ def _sentence(layout: Layout, name: str) -> Markup:
         show(layout, *place, "attributable_energy_pct"),
         interval(layout, *place, "ci95"),
         layout.summary.show("headline", "rests_on", name, "pairs", decimals=0),
-        layout.summary.show(*place, "passed_pct", decimals=0),
+        layout.summary.show(*place, "passed_pct", decimals=1),
         f" None of these trips is in {', '.join(empty)}: nothing is said of them." if empty else "",
     )
