@@ -11,13 +11,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import hp_gym
-from hp_gym import _core
+from hp_gym import _core, comfort_standard
 from hp_gym.agents.training import configuration
+from hp_gym.agents.training.trips import drive
 from hp_gym.comfort_standard import Verdict
+from hp_gym.envs.hpcu_policy import HpcuPolicy
+from hp_gym.envs.vector_env import EVHeatPumpVectorEnv
 from hp_gym.studies.optimise import search_loop
 from hp_gym.studies.tuning import objective as goals
 from hp_gym.studies.tuning import rule_choices, rule_families, search
-from hp_gym.studies.tuning.ambient_bands import BANDS, Band
+from hp_gym.studies.tuning.ambient_bands import BANDS, Band, training_distribution
 from hp_gym.studies.tuning.kept_trials import KeptTrials
 from hp_gym.studies.tuning.objective import objective
 from hp_gym.studies.tuning.rule_families import RuleFamily
@@ -104,6 +107,28 @@ def test_shipped_rules_are_no_worse_than_the_papers_on_training_trips_of_other_s
         choices = rule_choices.Choices(tables["base"], values)
         with objective(band, 64, 50_000) as goal:
             assert goal.score(choices) >= goal.score(rule_choices.PAPER)
+
+
+def test_rules_held_to_the_standard_pass_training_trips_of_other_seeds() -> None:
+    passed = []
+    for band in BANDS:
+        with training_distribution(band) as distribution:
+            of_strict, of_reference = (
+                _trips(distribution, name) for name in ("hpcu-tuned-strict", comfort_standard.REFERENCE)
+            )
+        passed += list(comfort_standard.judge(of_strict, of_reference).passes)
+    assert np.mean(passed) >= 0.95
+
+
+def _trips(distribution: Path, controller: str) -> comfort_standard.TripComfort:
+    env = EVHeatPumpVectorEnv(
+        64,
+        distribution=distribution,
+        continuous=True,
+        actions=HpcuPolicy.ACTIONS,
+        overrides={"scenario.controller": controller},
+    )
+    return drive(env, range(50_000, 50_064), lambda *_: env.rule_based_actions()).comfort
 
 
 def _flat(prefix: str, table: dict[str, Any]) -> Iterator[tuple[str, Any]]:

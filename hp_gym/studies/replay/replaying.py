@@ -64,7 +64,7 @@ class Replay:
     @property
     def title(self) -> str:
         """What was driven by what, in a line."""
-        return f"{Path(self.trace).name} by {self.vehicle} with {self.trajectory.controller}"
+        return f"{Path(self.trace).name} by {Path(self.vehicle).name} with {self.trajectory.controller}"
 
     def to_json(self) -> dict[str, Any]:
         """The figures as plain data, a pair each; None where not measured."""
